@@ -75,6 +75,7 @@ pub fn ensemble(
             kind => Ok(load_of(unit, kind, *value)),
         };
         let loads = loads.iter().map(given).collect::<Result<Vec<Load>>>()?;
+        memory::check_loads(&*contact, &loads)?;
         let mut found = Vec::new();
         contact.sweep(&loads, stop, &mut |_, state| {
             found.push(state);

@@ -3,7 +3,7 @@
 
 use crate::errors::of_model;
 use fractal_contact::runs::check_memory;
-use fractal_contact::{Cells, RequiredMemory};
+use fractal_contact::{Cells, Load, PreparedContact, RequiredMemory, Result};
 use pyo3::prelude::*;
 use std::borrow::Cow;
 
@@ -12,9 +12,9 @@ pub fn check(py: Python<'_>, what: impl Into<Cow<'static, str>>, bytes: f64) -> 
     check_memory(what, bytes).map_err(|error| of_model(py, error))
 }
 
-/// Bytes of a contact below which its solves are not looked at: to ask the system would take a part of their
-/// time.
-const SMALL: f64 = 1e8;
+/// Bytes of a contact, those of 200 cells a side, or of a solve, below which it is not looked at: to ask the system
+/// would take a part of its time.
+const SMALL: f64 = 2e6;
 
 /// Whether contacts that need this much at least are looked at before each solve.
 pub fn is_large(least: Option<&RequiredMemory>) -> bool {
@@ -29,8 +29,18 @@ pub fn check_solve<C: Send + ?Sized>(
     required: impl FnOnce(&mut C) -> Option<RequiredMemory> + Send,
 ) -> PyResult<()> {
     match py.detach(|| required(contact)) {
-        Some(RequiredMemory { what, bytes }) => check(py, what, bytes),
-        None => Ok(()),
+        Some(RequiredMemory { what, bytes }) if bytes > SMALL => check(py, what, bytes),
+        _ => Ok(()),
+    }
+}
+
+/// An error where one of these loads on a contact needs more than there is. As with [`check_solve`], small solves are
+/// not looked at.
+pub fn check_loads(contact: &dyn PreparedContact, loads: &[Load]) -> Result<()> {
+    let required = loads.iter().filter_map(|&load| contact.required_memory(load));
+    match required.max_by(|a, b| a.bytes.total_cmp(&b.bytes)) {
+        Some(RequiredMemory { what, bytes }) if bytes > SMALL => check_memory(what, bytes),
+        _ => Ok(()),
     }
 }
 

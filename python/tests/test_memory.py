@@ -84,6 +84,35 @@ print(fc.Bem3d(tolerance=1e-3).prepare(fc.Scene(map, contact_modulus=1.0)).solve
     assert told == "converged"
 
 
+@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="limits of Linux")
+@pytest.mark.parametrize("megabytes", [20, 50, 75, 90, 130])
+def test_with_little_to_spare_a_solve_is_refused_or_done(megabytes):
+    """About 83 MB are told for contact nearly everywhere on 601 x 601 cells."""
+    code = """
+import resource, sys
+import fractal_contact as fc
+rough = fc.Surface.self_affine(hurst=0.5, size=1.0, rms_height=0.01)
+map = rough.height_map(601, 1)
+fc.set_threads(1)
+# Threads and their arenas are there before the limit.
+fc.Bem3d().prepare(fc.Scene(rough.height_map(129, 1), 1.0)).solve(force=0.1)
+pages = int(open("/proc/self/statm").read().split()[0])
+limit = pages * resource.getpagesize() + int(sys.argv[1]) * 10**6
+resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
+scene = fc.Scene(map, 1.0, outputs=["stiffness", "pressure", "gap", "contact_patches"])
+try:
+    print(fc.Bem3d(tolerance=1e-3).prepare(scene).solve(force=2.0).status)
+except MemoryError as error:
+    assert error.needed > error.available > 0
+    print(error)
+"""
+    run = [sys.executable, "-c", code, str(megabytes)]
+    told = subprocess.run(run, capture_output=True, text=True, timeout=300)
+    assert told.returncode == 0, told.stderr
+    refused = "a contact of 601 columns" if megabytes < 30 else "a solve on 601 columns"
+    assert told.stdout.startswith(refused if megabytes < 80 else "converged"), told.stdout
+
+
 @pytest.mark.parametrize("cells", [10**9, (10**9, 10**9), (2**40, 2**40), 2**63])
 def test_absurd_numbers_of_cells(cells):
     flat, rough = fc.Surface.flat(size=1.0), fc.Surface.self_affine(hurst=0.6, size=1.0, rms_height=0.01)

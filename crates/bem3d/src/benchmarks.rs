@@ -62,21 +62,22 @@ pub fn timed(name: &str, side: usize, step: usize) -> Option<Box<dyn FnMut() -> 
             u[0]
         }),
         "two levels" => {
-            let mut operator = TwoLevel::new(window, Split { spacing: 8, reach: 6, order: 6 });
+            let mut operator =
+                TwoLevel::new(window, Split { spacing: 8, reach: 6, order: 6 }, &never).ok()?;
             Box::new(move || {
                 operator.apply(&set, &p, &set, &mut u);
                 u[0]
             })
         }
         "two transforms" => {
-            let mut operator = TwoTransforms::new(window, TwoTransforms::split_at(12, 6));
+            let mut operator = TwoTransforms::new(window, TwoTransforms::split_at(12, 6), &never).ok()?;
             Box::new(move || {
                 operator.apply(&set, &p, &set, &mut u);
                 u[0]
             })
         }
         "f64" => {
-            let mut operator = FftConvolution::<f64>::new(window, free, table.symbol_f64(free));
+            let mut operator = FftConvolution::<f64>::new(window, free, table.symbol_f64(free, &never).ok()?);
             Box::new(move || {
                 operator.apply(&set, &p, &set, &mut u);
                 u[0]
@@ -84,8 +85,8 @@ pub fn timed(name: &str, side: usize, step: usize) -> Option<Box<dyn FnMut() -> 
         }
         "f32" | "inverse" => {
             let (lengths, symbol) = match name {
-                "f32" => (free, table.symbol_f32(free)),
-                _ => (torus, table.inverse_symbol(torus)),
+                "f32" => (free, table.symbol_f32(free, &never).ok()?),
+                _ => (torus, table.inverse_symbol(torus, &never).ok()?),
             };
             let mut operator = FftConvolution::<f32>::new(window, lengths, symbol);
             Box::new(move || {
@@ -96,7 +97,8 @@ pub fn timed(name: &str, side: usize, step: usize) -> Option<Box<dyn FnMut() -> 
         "tangential f64" => {
             let table = TangentialTable::shared(grid, Boundary::Free, TANGENTIAL);
             let lengths = table.exact_lengths(window);
-            let mut operator = VectorConvolution::<f64>::new(window, lengths, table.symbol_f64(lengths));
+            let mut operator =
+                VectorConvolution::<f64>::new(window, lengths, table.symbol_f64(lengths, &never).ok()?);
             let (q, mut u) = ([&p[..], &p].concat(), [&u[..], &u].concat());
             Box::new(move || {
                 operator.apply(&set, &q, &set, &mut u);
@@ -107,10 +109,10 @@ pub fn timed(name: &str, side: usize, step: usize) -> Option<Box<dyn FnMut() -> 
             let table = TangentialTable::shared(grid, Boundary::Free, TANGENTIAL);
             let (lengths, symbol) = if name == "tangential f32" {
                 let lengths = table.exact_lengths(window);
-                (lengths, table.symbol_f32(lengths))
+                (lengths, table.symbol_f32(lengths, &never).ok()?)
             } else {
                 let lengths = table.torus_lengths(window);
-                (lengths, table.inverse_symbol(lengths))
+                (lengths, table.inverse_symbol(lengths, &never).ok()?)
             };
             let mut operator = VectorConvolution::<f32>::new(window, lengths, symbol);
             let q: Vec<f32> = p.iter().chain(&p).map(|&p| p as f32).collect();
@@ -206,6 +208,7 @@ impl PartialSlipBench {
         let [after, _] = friction.work();
         let k =
             stiffness.then(|| tangential::solve(friction, &state, StiffnessOf::Branch, tolerance, &never));
+        let k = k.transpose().ok()?;
         let [end, _] = friction.work();
         Some(IncrementResult {
             applications: after - before,

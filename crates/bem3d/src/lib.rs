@@ -143,8 +143,8 @@
 //! | `model/contact.rs` | `solve_until`, `state_at`, `solved_at`, `at_target`, `settle` | tell adhesion from its absence, find the pressure and then the stiffness, return the state |
 //! | `active_set/solver.rs` | `solve`, `iterate`, `evaluate`, `improve` | iterate over contact sets |
 //! | `linear/pcg.rs` | `Workspace::solve`, `pcg` | solve the linear system on one set |
-//! | `operator/plans.rs` | `Plans::exact`, `Planned::apply` | apply the operator that is planned for the set |
-//! | `operator/convolution.rs` | `Convolution::apply` | convolve |
+//! | `operator/plans.rs` | `Plans::exact`, `Planned::apply_until` | apply the operator that is planned for the set |
+//! | `operator/convolution.rs` | `Convolution::apply_until` | convolve |
 //!
 //! Corrections of the pressure go through `linear/pcg.rs`. Residuals go from the solver straight to
 //! `Plans::exact`, in double precision. Three more files belong to this: `model/load.rs` brings a load
@@ -160,7 +160,7 @@
 //! | `friction/state.rs` | `advance` | give each cell its limit by the law, and the place from which its slip counts |
 //! | `friction/increment.rs` | `solve`, `iterate`, `newton`, `go_to` | iterate over the cells that stick and slip, each step downhill |
 //! | `linear/pcg.rs` | `pcg` | solve the linearised conditions |
-//! | `operator/plans.rs` | `Plans::exact`, `Planned::apply` | apply the kernel of two components |
+//! | `operator/plans.rs` | `Plans::exact`, `Planned::apply_until` | apply the kernel of two components |
 //!
 //! **A kernel** is one file of `kernel` and one line of `kernel/table.rs`, where kernels are listed. It says of
 //! itself all that operators, planner, preconditioner and stiffness ask.
@@ -254,6 +254,14 @@
 //! on processors with the same instructions, and agree to rounding on others. Without the features `simd` and
 //! `faer` they use no instructions beyond those of the architecture.
 //!
+//! # Stops
+//!
+//! A `Stop` is asked between the tasks of every application and of every table: between 32 rows, or a few
+//! columns, of a transform. What an operator leaves unfinished is an `Interrupted` that goes up to the load, so
+//! that no state is made from it, and no table is kept. A stopped solve has its last pressure as the best state
+//! where the certificate of that is known or takes a few hundredths of a second. The factor of a small set and
+//! single passes over the grid are not left.
+//!
 //! # What it does not do
 //!
 //! These are refused at `prepare`:
@@ -275,13 +283,14 @@ mod operator;
 mod parts;
 mod real;
 mod response;
+mod tasks;
 mod tuning;
 
 // All that a first program needs beside the model itself: scenes, loads, states, height maps, the traits.
 #[doc(no_inline)]
 pub use contact_model::*;
 pub use kernel::love;
-pub use model::{BYTES_PER_CELL, Bem3d, Method, UNRESOLVED_RANGE, bytes_per_cell};
+pub use model::{BYTES_PER_CELL, Bem3d, Method, UNRESOLVED_RANGE, solve_bytes};
 
 #[doc(hidden)]
 pub mod benchmarks;

@@ -218,7 +218,9 @@ struct Gigabytes(f64);
 impl fmt::Display for Gigabytes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let gigabytes = self.0 * 1e-9;
-        if (0.1..1e6).contains(&gigabytes) {
+        if (1e-2..1.0).contains(&gigabytes) {
+            write!(f, "{:.0} MB", 1e3 * gigabytes)
+        } else if (1.0..1e6).contains(&gigabytes) {
             write!(f, "{gigabytes:.1} GB")
         } else {
             write!(f, "{gigabytes:.1e} GB")

@@ -82,7 +82,9 @@ pub use height_map::HeightMap;
 pub use line::Line;
 pub use load::{Directions, Load, NormalLoad, Tangential};
 pub use memory::PathMemory;
-pub use model::{ContactModel, PreparedContact, RequiredMemory, Source, Stop, Watch, check_stop, never};
+pub use model::{
+    ContactModel, Interrupted, PreparedContact, RequiredMemory, Source, Stop, Watch, check_stop, never,
+};
 pub use nondimensionalisation::Nondimensionalisation;
 pub use normalisation::{Normalisation, PAPER_STIFFNESS_FACTOR};
 pub use pair::{Body, Pair};

@@ -30,7 +30,7 @@ pub struct RequiredMemory {
     pub bytes: f64,
 }
 
-/// An observer of a solve: it may end the solve between iterations, and it receives the residuals.
+/// An observer of a solve: it may end the solve, and it receives the residuals.
 ///
 /// Every `Fn() -> bool` is an observer that ignores the residuals. A solver never reads a clock itself.
 ///
@@ -71,12 +71,23 @@ impl<F: Fn() -> bool> Watch for F {
     }
 }
 
-/// Polled between iterations.
+/// Polled between iterations, and in long ones within them. Once it has said stop, it should go on to say so.
 pub type Stop<'a> = &'a dyn Watch;
 
 /// The [`Stop`] that never stops.
 pub fn never() -> bool {
     false
+}
+
+/// A piece of work was left unfinished because its [`Stop`] said so. What it would have written is undefined.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Interrupted;
+
+impl Interrupted {
+    /// The error of a solve that was stopped before it had a state: [`Error::Stopped`] without one.
+    pub fn without_state(self) -> Error {
+        Error::Stopped { best: None }
+    }
 }
 
 /// Ends a solve that was stopped before it has a state.
@@ -153,7 +164,7 @@ pub trait PreparedContact: Send {
     /// The normalisation of this surface, with its own measured rms height.
     fn normalisation(&self) -> Normalisation;
 
-    /// Solves for one load from no contact; `stop` is polled between iterations.
+    /// Solves for one load from no contact; `stop` is polled as [`Stop`] says.
     ///
     /// Loads solved before change the result by no more than the stated tolerance; increasing loads are the
     /// fastest order. This also holds for effects with a memory: each load is reached from the virgin surface
@@ -187,7 +198,7 @@ pub trait PreparedContact: Send {
         self.solve_until(load, &never)
     }
 
-    /// Advances to the end of the next step of a path; `stop` is polled between iterations. **A step that
+    /// Advances to the end of the next step of a path; `stop` is polled as [`Stop`] says. **A step that
     /// fails leaves the contact as it was before.**
     ///
     /// A contact without a memory solves for the load of the step, whatever came before.

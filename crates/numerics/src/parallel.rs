@@ -13,6 +13,8 @@
 #[cfg(feature = "rayon")]
 use std::cell::Cell;
 #[cfg(feature = "rayon")]
+use std::sync::atomic::{AtomicBool, Ordering};
+#[cfg(feature = "rayon")]
 use std::sync::{Mutex, PoisonError};
 
 /// Number of elements of a vector loop for which a further thread pays; other values were not measured.
@@ -62,15 +64,15 @@ pub fn widest<R>(work: impl FnOnce() -> R) -> R {
     work()
 }
 
-/// Does `work` on this thread and on `helpers` others of its pool, once on each. Not generic, so that the sharing
-/// is compiled once and not for each of hundreds of loops.
+/// Does `own` on this thread and `work` on `helpers` others of its pool, once on each. Not generic, so that the
+/// sharing is compiled once and not for each of hundreds of loops.
 #[cfg(feature = "rayon")]
-fn on_threads(helpers: usize, work: &(dyn Fn() + Sync)) {
+fn on_threads(helpers: usize, work: &(dyn Fn() + Sync), own: &dyn Fn()) {
     rayon::in_place_scope(|scope| {
         for _ in 0..helpers {
             scope.spawn(|_| work());
         }
-        work();
+        own();
     });
 }
 
@@ -80,35 +82,60 @@ pub fn for_each<T: Send, B: Send>(
     mut tasks: impl ExactSizeIterator<Item = T> + Send,
     work: impl Fn(&mut B, T) + Sync,
 ) {
-    share(buffers, &mut tasks, &work);
+    share(buffers, &mut tasks, &work, &|| false);
 }
 
-/// [`for_each`], compiled once for each type of task and buffer and not for each of hundreds of loops.
+/// As [`for_each`], as long as `stops` does not say to stop: it is asked on this thread before each of its tasks,
+/// and the others then begin no further task either. Returns whether every task was done.
+pub fn for_each_until<T: Send, B: Send>(
+    buffers: &mut [B],
+    mut tasks: impl ExactSizeIterator<Item = T> + Send,
+    stops: &dyn Fn() -> bool,
+    work: impl Fn(&mut B, T) + Sync,
+) -> bool {
+    share(buffers, &mut tasks, &work, stops)
+}
+
+/// [`for_each_until`], compiled once for each type of task and buffer and not for each of hundreds of loops.
 fn share<T: Send, B: Send>(
     buffers: &mut [B],
     tasks: &mut (dyn ExactSizeIterator<Item = T> + Send),
     work: &(dyn Fn(&mut B, T) + Sync),
-) {
+    stops: &dyn Fn() -> bool,
+) -> bool {
     #[cfg(feature = "rayon")]
     if let helpers @ 1.. = buffers.len().min(tasks.len()).saturating_sub(1)
         && let Some(_sharing) = Sharing::begin()
     {
         let tasks = Mutex::new(tasks);
         let buffers = Mutex::new(buffers.iter_mut());
-        on_threads(helpers, &|| {
+        let stopped = AtomicBool::new(false);
+        let until = |stops: &dyn Fn() -> bool| {
             if let Some(buffer) = next(&buffers) {
-                while let Some(task) = next(&tasks) {
+                while !stops()
+                    && let Some(task) = next(&tasks)
+                {
                     work(buffer, task);
                 }
             }
-        });
-        return;
+        };
+        let heard = || stopped.load(Ordering::Relaxed);
+        let asked = || {
+            let stops = stops();
+            stopped.fetch_or(stops, Ordering::Relaxed);
+            stops
+        };
+        on_threads(helpers, &|| until(&heard), &|| until(&asked));
+        return next(&tasks).is_none();
     }
-    if let Some(buffer) = buffers.first_mut() {
-        for task in tasks {
-            work(buffer, task);
+    let Some(buffer) = buffers.first_mut() else { return true };
+    for task in tasks {
+        if stops() {
+            return false;
         }
+        work(buffer, task);
     }
+    true
 }
 
 /// The next of what threads share.
@@ -136,7 +163,8 @@ fn collect<T: Send, R: Send + Default>(
     let mut results: Vec<R> = Vec::new();
     results.resize_with(tasks.len(), R::default);
     let mut buffers = vec![(); threads];
-    share(&mut buffers, &mut tasks.zip(&mut results), &|(), (task, result)| *result = work(task));
+    let each = |(): &mut (), (task, result): (T, &mut R)| *result = work(task);
+    share(&mut buffers, &mut tasks.zip(&mut results), &each, &|| false);
     results
 }
 
@@ -161,6 +189,27 @@ mod tests {
         assert_eq!(map(usize::MAX, 0..50, |i| i * i), (0..50).map(|i| i * i).collect::<Vec<_>>());
         assert_eq!(threads_for(0), 1);
         assert_eq!(threads_for(2 * WORK_PER_THREAD - 1), 1, "not enough for two");
+    }
+
+    #[test]
+    fn after_a_stop_each_thread_ends_its_task_and_begins_no_other() {
+        use std::sync::atomic::{AtomicUsize, Ordering};
+        for threads in [1, 4] {
+            let (done, asked) = (AtomicUsize::new(0), std::cell::Cell::new(0));
+            let stops = || {
+                asked.set(asked.get() + 1);
+                asked.get() > 3
+            };
+            let mut buffers = vec![(); threads];
+            let all = for_each_until(&mut buffers, 0..usize::MAX, &stops, |(), _| {
+                done.fetch_add(1, Ordering::Relaxed);
+            });
+            assert!(!all && asked.get() == 4, "it is asked before each task of its thread");
+            if threads == 1 {
+                assert_eq!(done.into_inner(), 3);
+            }
+            assert!(for_each_until(&mut buffers, 0..100, &|| false, |(), _| {}));
+        }
     }
 
     #[cfg(feature = "rayon")]

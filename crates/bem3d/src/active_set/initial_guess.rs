@@ -6,7 +6,7 @@ use super::solver::solve;
 use super::state::{Control, Guess, Limits, Problem, Solved};
 use crate::geometry::{CellSet, Grid};
 use crate::tuning::Tuning;
-use contact_model::Stop;
+use contact_model::{Interrupted, Stop};
 use numerics::parallel::{for_each, threads_for};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -84,28 +84,34 @@ impl LastState {
     /// cells than the load has grown by, eliminating them costs about three times as much as a coarse
     /// solution. `predicted` counts them with one application; where a good part of the grid will touch, the
     /// answer is known without counting.
+    ///
+    /// # Errors
+    /// That of `predicted`.
     pub fn overshoots(
         &self,
         target: Control,
         cells: usize,
         tuning: &Tuning,
-        predicted: impl FnOnce() -> usize,
-    ) -> bool {
+        predicted: impl FnOnce() -> Result<usize, Interrupted>,
+    ) -> Result<bool, Interrupted> {
         let ratio = self.ratio(target);
         let (expected, cells) = (self.contact.len() as f64 * ratio, cells as f64);
-        !(tuning.near.0..=tuning.near.1).contains(&ratio)
+        Ok(!(tuning.near.0..=tuning.near.1).contains(&ratio)
             && (expected * tuning.filling >= cells
-                || (expected * tuning.counted >= cells && predicted() as f64 > tuning.overshoot * expected))
+                || (expected * tuning.counted >= cells && predicted()? as f64 > tuning.overshoot * expected)))
     }
 }
 
 /// Number of cells that carry pressure or would penetrate under a guess, in single precision.
-pub fn predicted_cells(problem: &mut Problem, guess: &Guess) -> usize {
+///
+/// # Errors
+/// [`Interrupted`] by the stop.
+pub fn predicted_cells(problem: &mut Problem, guess: &Guess, stop: Stop<'_>) -> Result<usize, Interrupted> {
     let checked = problem.candidates.below(guess.d).union(&guess.set);
     let mut gap = Vec::new();
-    problem.operators.rough(&guess.set, &guess.p, &checked, &mut gap);
+    problem.operators.rough(&guess.set, &guess.p, &checked, &mut gap, stop)?;
     problem.candidates.add_to(&checked, &mut gap);
-    gap.iter().filter(|&&g| g < guess.d).count().max(guess.set.len())
+    Ok(gap.iter().filter(|&&g| g < guess.d).count().max(guess.set.len()))
 }
 
 /// A guess for a load where no state is known.
@@ -114,7 +120,15 @@ pub fn predicted_cells(problem: &mut Problem, guess: &Guess) -> usize {
 /// are few they are the guess; otherwise the surface averaged over 2 x 2 cells is solved first. A coarse grid
 /// only says where to begin: every fine cell stays a candidate, because fractal summits vanish on coarse
 /// grids.
-pub fn cold_start(problem: &mut Problem, target: Control, limits: Limits, stop: Stop<'_>) -> Guess {
+///
+/// # Errors
+/// [`Interrupted`] by the stop.
+pub fn cold_start(
+    problem: &mut Problem,
+    target: Control,
+    limits: Limits,
+    stop: Stop<'_>,
+) -> Result<Guess, Interrupted> {
     let (grid, tuning) = (problem.grid(), *problem.operators.tuning());
     let own = problem.operators.table().own();
     // The highest cell of a coarse grid lies below the plane of first touch.
@@ -134,13 +148,13 @@ pub fn cold_start(problem: &mut Problem, target: Control, limits: Limits, stop: 
         Guess { p: vec![p; set.len()], set, d: reach }
     };
     if grid.count() <= tuning.coarsest * tuning.coarsest || !problem.nested {
-        return from_above(problem);
+        return Ok(from_above(problem));
     }
     if limits.factor && !problem.candidates.more_than(tuning.largest_factor, reach) {
         let guess = from_above(problem);
         let window = guess.set.window().unwrap_or(grid.window());
         if problem.operators.planner().factors(guess.set.len(), window) {
-            return guess;
+            return Ok(guess);
         }
     }
     let mut coarse = problem.coarser.take().unwrap_or_else(|| Box::new(coarser(problem)));
@@ -148,7 +162,7 @@ pub fn cold_start(problem: &mut Problem, target: Control, limits: Limits, stop: 
         && coarse.candidates.range().first >= d
     {
         problem.coarser = Some(coarse);
-        return from_above(problem);
+        return Ok(from_above(problem));
     }
     let limits =
         Limits { tolerance: tuning.coarse_tolerance, outer_iterations: tuning.coarse_iterations, ..limits };
@@ -158,11 +172,11 @@ pub fn cold_start(problem: &mut Problem, target: Control, limits: Limits, stop: 
     };
     // Residuals of coarse grids say nothing about this one's.
     let unheard = || stop.stops();
-    let guess = cold_start(&mut coarse, coarse_target, limits, &unheard);
-    let solved = solve(&mut coarse, coarse_target, guess, limits, &unheard);
+    let guess = cold_start(&mut coarse, coarse_target, limits, &unheard)?;
+    let solved = solve(&mut coarse, coarse_target, guess, limits, &unheard)?;
     let guess = prolonged(problem, &solved);
     problem.coarser = Some(coarse);
-    guess
+    Ok(guess)
 }
 
 /// Fine columns and rows of a coarse cell: a direction with few cells is left as it is.

@@ -14,5 +14,5 @@ pub use bounds::Bounds;
 pub use candidates::Candidates;
 pub use initial_guess::{LastState, cold_start, predicted_cells};
 pub use residuals::{ContactGap, Residuals};
-pub use solver::{resume, solve};
+pub use solver::{CERTIFIED_NS, resume, solve};
 pub use state::{Continuation, Control, Guess, Limits, Problem, Solved};

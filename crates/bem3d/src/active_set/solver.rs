@@ -11,7 +11,7 @@ use crate::law::{Descent, descend};
 use crate::linear::{Factor, Fixed};
 use crate::parts::{Part, Recorder};
 use crate::real::{each, largest, sum_of_pairs, update};
-use contact_model::{Status, Stop};
+use contact_model::{Interrupted, Status, Stop, never};
 
 /// Solves for one load from a guess.
 ///
@@ -21,8 +21,20 @@ use contact_model::{Status, Stop};
 /// Rounding and early stops can break this, so each outer iteration evaluates the exact gap on all candidates
 /// and adds the cells that penetrate.
 ///
+/// A solve that is stopped returns its last pressure, where the certificate of that is known or takes less than
+/// [`CERTIFIED_NS`].
+///
+/// # Errors
+/// [`Interrupted`] by the stop, where it does not.
+///
 /// Cost: 20 to 60 applications of G for a tolerance of 1e-4, or a few factorisations for a small set.
-pub fn solve(problem: &mut Problem, target: Control, guess: Guess, limits: Limits, stop: Stop<'_>) -> Solved {
+pub fn solve(
+    problem: &mut Problem,
+    target: Control,
+    guess: Guess,
+    limits: Limits,
+    stop: Stop<'_>,
+) -> Result<Solved, Interrupted> {
     let Guess { set, p, d } = guess;
     let reach = match target {
         Control::Force(_) => d,
@@ -34,19 +46,26 @@ pub fn solve(problem: &mut Problem, target: Control, guess: Guess, limits: Limit
 }
 
 /// Goes on from a solved state to a tighter tolerance; its gap is not evaluated again.
+///
+/// # Errors
+/// As [`solve`].
 pub fn resume(
     problem: &mut Problem,
     target: Control,
     solved: Solved,
     limits: Limits,
     stop: Stop<'_>,
-) -> Solved {
+) -> Result<Solved, Interrupted> {
     let Solved { contact, p, d, q, residuals, continuation, .. } = solved;
     let evaluated =
         Evaluated { residuals, complete: true, uncertainty: 0.0, factored: q.is_some(), step: None };
     let solver = Solver::new(problem, target, limits, Pressure { contact, p, d, q }, continuation);
     solver.iterate(Some(evaluated), stop)
 }
+
+/// Time of an application that a stop waits for, to certify the last pressure or to give its fields; by the cost
+/// model, in ns. It is that of some 1000 cells a side.
+pub const CERTIFIED_NS: f64 = 2e7;
 
 /// A pressure on its way to a solution.
 #[derive(Debug, Clone, Default)]
@@ -89,6 +108,8 @@ struct Solver<'a> {
     /// Largest number of steps of the next inner solve: few after one that was shortened, because long ones
     /// change the sets too much at once.
     inner_steps: usize,
+    /// The residuals of the present pressure, where they were measured in double precision on all candidates.
+    certified: Option<Residuals>,
 }
 
 impl<'a> Solver<'a> {
@@ -117,50 +138,87 @@ impl<'a> Solver<'a> {
             now_is_best: false,
             before: None,
             inner_steps: usize::MAX,
+            certified: None,
         }
     }
 
-    fn iterate(mut self, mut known: Option<Evaluated>, stop: Stop<'_>) -> Solved {
-        let (tuning, recorder) = (*self.problem.operators.tuning(), self.recorder());
+    fn iterate(mut self, known: Option<Evaluated>, stop: Stop<'_>) -> Result<Solved, Interrupted> {
+        let tuning = *self.problem.operators.tuning();
         let mut progress = OuterProgress::new(self.limits);
-        let (mut steps, tolerance) = (0, self.limits.tolerance);
-        let (status, last) = loop {
-            let mut evaluated = known
-                .take()
-                .unwrap_or_else(|| recorder.timed(Part::Residuals, || self.evaluate(progress.look)));
+        let mut steps = 0;
+        let (status, worst) = match self.improve_until_the_end(known, &mut progress, &mut steps, stop) {
+            Ok(ended) => ended,
+            Err(Interrupted) => {
+                (Status::Stopped, self.certified.map_or(f64::INFINITY, |residuals| residuals.worst()))
+            }
+        };
+        let soon = self.is_certified_soon();
+        let best_is_better = !self.now_is_best && progress.best.is_finite() && progress.best <= worst;
+        if status != Status::Converged && best_is_better && (soon || status != Status::Stopped) {
+            self.now = std::mem::take(&mut self.best);
+            (self.state, self.reach) = (Continuation::default(), tuning.candidates * self.now.d);
+            self.certified = None;
+        }
+        // What is returned carries residuals of double precision on every candidate, converged or not.
+        let residuals = match self.certified {
+            Some(residuals) => residuals,
+            None if soon => self.evaluate(Look::Exact, &never)?.residuals,
+            None => self.evaluate(Look::Exact, stop)?.residuals,
+        };
+        let Self { now: Pressure { contact, p, d, q }, state: continuation, .. } = self;
+        Ok(Solved { contact, p, d, q, residuals, steps, status, continuation })
+    }
+
+    /// Outer iterations until the present pressure has converged or a better one is not to be expected. Adds the
+    /// steps taken, and returns the largest residual too, as it was evaluated last.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop; the present pressure is then one that obeys the bounds and the force.
+    fn improve_until_the_end(
+        &mut self,
+        mut known: Option<Evaluated>,
+        progress: &mut OuterProgress,
+        steps: &mut usize,
+        stop: Stop<'_>,
+    ) -> Result<(Status, f64), Interrupted> {
+        let (tuning, recorder) = (*self.problem.operators.tuning(), self.recorder());
+        let tolerance = self.limits.tolerance;
+        loop {
+            let mut evaluated = match known.take() {
+                Some(known) => {
+                    self.certified = Some(known.residuals);
+                    known
+                }
+                None => recorder.timed(Part::Residuals, || self.evaluate(progress.look, stop))?,
+            };
             let within = evaluated.residuals.worst() <= tolerance;
             if within && (evaluated.uncertainty > 0.0 || evaluated.step.is_some()) {
                 // Better than expected; the end of a step that was shortened has not been evaluated.
-                evaluated = recorder.timed(Part::Residuals, || self.evaluate(Look::Exact));
+                evaluated = recorder.timed(Part::Residuals, || self.evaluate(Look::Exact, stop))?;
             }
             let fell_back = progress.falls_back();
             match progress.judge(evaluated, self.now.d, &tuning, stop) {
-                Decision::End(status) => break (status, evaluated),
+                Decision::End(status) => return Ok((status, evaluated.residuals.worst())),
                 Decision::Continue { best } => self.now_is_best |= best,
             }
             if progress.falls_back() {
                 if !fell_back {
                     // From the exact gap of a pressure that obeys the bounds and the force.
-                    self.evaluate(Look::Exact);
+                    self.evaluate(Look::Exact, stop)?;
                 }
-                steps += self.descend(stop);
+                *steps += self.descend(stop)?;
                 continue;
             }
             let may_alternate = self.problem.bounds.is_reached(&self.now.p);
             self.before = may_alternate.then(|| (self.now.clone(), self.state.clone()));
-            steps += self.improve(evaluated.residuals.worst(), stop);
-        };
-        let mut residuals = last.residuals;
-        if status != Status::Converged && !self.now_is_best && progress.best <= residuals.worst() {
-            self.now = std::mem::take(&mut self.best);
-            (self.state, self.reach) = (Continuation::default(), tuning.candidates * self.now.d);
-            residuals = self.evaluate(Look::Exact).residuals;
-        } else if !last.complete {
-            // What is returned carries residuals of double precision on every candidate, converged or not.
-            residuals = self.evaluate(Look::Exact).residuals;
+            *steps += self.improve(evaluated.residuals.worst(), stop)?;
         }
-        let Self { now: Pressure { contact, p, d, q }, state: continuation, .. } = self;
-        Solved { contact, p, d, q, residuals, steps, status, continuation }
+    }
+
+    /// Whether the exact gap of the present pressure is evaluated so fast that a stop may wait for it.
+    fn is_certified_soon(&self) -> bool {
+        let operators = &self.problem.operators;
+        operators.plans.nanoseconds(operators.table().grid().window()) < CERTIFIED_NS
     }
 
     fn recorder(&self) -> Recorder {
@@ -171,11 +229,15 @@ impl<'a> Solver<'a> {
     /// from it.
     ///
     /// A gap in single precision decides how to go on, but never certifies a state.
-    fn evaluate(&mut self, look: Look) -> Evaluated {
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop; the gap is then undefined.
+    fn evaluate(&mut self, look: Look, stop: Stop<'_>) -> Result<Evaluated, Interrupted> {
+        self.certified = None;
         let Self { problem, target, now, .. } = self;
         let Problem { bounds, candidates, .. } = &**problem;
         let joined = bounds.admit(&mut now.contact, &mut now.p, target.force(), candidates);
-        self.displace(joined, look);
+        self.displace(joined, look, stop)?;
         let step = self.shorten();
         let Self { problem, target, limits, now, state, left, reach, uncertainty, .. } = self;
         let (bounds, tuning) = (problem.bounds, problem.operators.tuning());
@@ -195,13 +257,15 @@ impl<'a> Solver<'a> {
         *reach = tuning.candidates * d;
         let height = limits.height.unwrap_or(d);
         let under = ContactGap { contact: &now.contact, left, checked, gap };
-        Evaluated {
+        let evaluated = Evaluated {
             residuals: Residuals::measure(bounds, &now.p, under, height),
             complete: *uncertainty <= 0.0 && step.is_none() && d <= state.reach,
             uncertainty: *uncertainty,
             factored: now.q.is_some(),
             step,
-        }
+        };
+        self.certified = evaluated.complete.then_some(evaluated.residuals);
+        Ok(evaluated)
     }
 
     /// Evaluates u + z under the present pressure on all cells that could touch; `joined`: cells were added
@@ -209,7 +273,7 @@ impl<'a> Solver<'a> {
     ///
     /// In single precision only the change since the last gap is evaluated: the error is relative to what is
     /// transformed.
-    fn displace(&mut self, joined: bool, look: Look) {
+    fn displace(&mut self, joined: bool, look: Look, stop: Stop<'_>) -> Result<(), Interrupted> {
         let Self { problem, now, state, reach, measured, displacement, uncertainty, .. } = self;
         let Problem { candidates, operators, .. } = &mut **problem;
         let (kept, recorder) = (operators.tuning().kept_candidates, operators.recorder().clone());
@@ -230,22 +294,23 @@ impl<'a> Solver<'a> {
         let cells = before.as_ref().map_or(&now.contact, |(cells, _)| cells);
         let error = if exact { 0.0 } else { operators.roughness(cells, checked) };
         if error <= 0.0 {
-            operators.exact(&now.contact, &now.p, checked, gap);
+            operators.exact(&now.contact, &now.p, checked, gap, stop)?;
             *uncertainty = 0.0;
         } else if let Some((cells, mut change)) = before {
             recorder.timed(Part::Sets, || cells.add_carried(&now.contact, &now.p, &mut change));
-            operators.rough(&cells, &change, checked, displacement);
+            operators.rough(&cells, &change, checked, displacement, stop)?;
             // A pressure that changes its sign from cell to cell displaces little.
             let own = operators.table().own() * largest(&change);
             *uncertainty += error * own.max(largest(displacement));
             let d = now.d;
             update(gap, displacement, |gap, u| *gap += u + d);
-            return;
+            return Ok(());
         } else {
-            operators.rough(&now.contact, &now.p, checked, gap);
+            operators.rough(&now.contact, &now.p, checked, gap, stop)?;
             *uncertainty = error * largest(gap);
         }
         recorder.timed(Part::Sets, || candidates.add_to(checked, gap));
+        Ok(())
     }
 
     /// Shortens the step that led to the present pressure where it passed the minimum of the energy. Returns
@@ -273,7 +338,10 @@ impl<'a> Solver<'a> {
 
     /// One outer iteration: a new set from the gap, a solution on it, and the cells in tension removed.
     /// Returns the steps taken.
-    fn improve(&mut self, error: f64, stop: Stop<'_>) -> usize {
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop; the present pressure is then as it was.
+    fn improve(&mut self, error: f64, stop: Stop<'_>) -> Result<usize, Interrupted> {
         let recorder = self.recorder();
         let Self { problem, target, limits, now, state, left, measured, .. } = self;
         let (bounds, tuning) = (problem.bounds, *problem.operators.tuning());
@@ -285,7 +353,7 @@ impl<'a> Solver<'a> {
             (if held.is_empty() { set } else { set.without(&held) }, held)
         });
         let planner = problem.operators.planner();
-        let Some(recipe) = planner.system(&set, now.contact.len(), false) else { return 0 };
+        let Some(recipe) = planner.system(&set, now.contact.len(), false) else { return Ok(0) };
         if limits.factor
             && !bounds.is_reached(&now.p)
             && planner.factors(set.len(), recipe.window)
@@ -293,16 +361,16 @@ impl<'a> Solver<'a> {
         {
             self.reach = tuning.candidates * exact.d;
             self.advance(exact);
-            return 0;
+            return Ok(0);
         }
         let mut change = recorder.timed(Part::Sets, || set.carry(checked, gap));
         each(&mut change, |value| *value = -*value);
         let mut criteria = criteria(*limits, error, now.d, &tuning);
         criteria.steps = criteria.steps.min(self.inner_steps);
         let Problem { operators, workspace, .. } = &mut **problem;
-        workspace.take(operators, set, recipe);
+        workspace.take(operators, set, recipe, stop)?;
         let fixed = if target.force().is_some() { Fixed::Force } else { Fixed::Approach };
-        let outcome = workspace.solve(operators, &mut change, fixed, criteria, stop);
+        let outcome = workspace.solve(operators, &mut change, fixed, criteria, stop)?;
         let set = workspace.set();
         let (contact, p) = recorder.timed(Part::Sets, || {
             let mut before = set.carry(&now.contact, &now.p);
@@ -316,11 +384,15 @@ impl<'a> Solver<'a> {
         });
         let d = now.d;
         self.advance(Pressure { contact, p, d, q: None });
-        outcome.steps
+        Ok(outcome.steps)
     }
 
     /// Steps of the fall-back from the present pressure and its gap. Returns the steps taken.
-    fn descend(&mut self, stop: Stop<'_>) -> usize {
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop; the present pressure is then as it was, and its gap undefined.
+    fn descend(&mut self, stop: Stop<'_>) -> Result<usize, Interrupted> {
+        self.certified = None;
         let Self { problem, target, now, state, .. } = self;
         let Problem { operators, bounds, .. } = &mut **problem;
         let Continuation { checked, gap, .. } = state;
@@ -333,17 +405,18 @@ impl<'a> Solver<'a> {
             gradient: gap,
             own: operators.table().own(),
         };
-        let displace = |change: &[f64], u: &mut Vec<f64>| operators.exact(checked, change, checked, u);
-        let steps = descend(descent, displace, most, stop);
+        let displace = |change: &[f64], u: &mut Vec<f64>| operators.exact(checked, change, checked, u, stop);
+        let steps = descend(descent, displace, most, stop)?;
         let contact = checked.filter(&p, |p| p > 0.0);
         p.retain(|&p| p > 0.0);
         let d = now.d;
         self.advance(Pressure { contact, p, d, q: None });
-        steps
+        Ok(steps)
     }
 
     /// Replaces the present pressure; it is kept where it is the best.
     fn advance(&mut self, next: Pressure) {
+        self.certified = None;
         let last = std::mem::replace(&mut self.now, next);
         if std::mem::take(&mut self.now_is_best) {
             self.best = last;

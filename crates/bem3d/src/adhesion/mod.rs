@@ -66,8 +66,8 @@
 //!
 //! # When it looks for a stop
 //!
-//! In each step of the linear systems, in each round over the fronts, and between the parts of an update. A
-//! stopped update leaves the state as its last evaluation found it.
+//! In each application of an operator, and in each round over the fronts. A stopped update leaves the state as its
+//! last evaluation found it. A stopped evaluation leaves none.
 
 mod attraction;
 mod bottleneck;

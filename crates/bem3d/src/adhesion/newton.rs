@@ -64,6 +64,7 @@ pub use system::{Predicted, WantedStep};
 use super::attraction::Attraction;
 use super::equilibrium::Equilibrium;
 use crate::active_set::Problem;
+use contact_model::Interrupted;
 use system::Linear;
 
 // Half and twice the value of each constant below change the work by less than 1 % (34 paths of rough maps and of
@@ -141,31 +142,31 @@ fn extremes(changes: impl Iterator<Item = f64>) -> (f64, f64) {
 /// A Newton step, `None` where it may lead off the branch, and the number of steps of minimal residuals that it
 /// took.
 ///
+/// # Errors
+/// [`Interrupted`] by the stop.
+///
 /// Cost: a product by G and two means over neighbours a step.
 pub fn step(
     problem: &mut Problem,
     attraction: &Attraction,
     wanted: &WantedStep<'_>,
-) -> (Option<Trial>, usize) {
-    let WantedStep { state, predicted, reduction, stop, .. } = *wanted;
+) -> Result<(Option<Trial>, usize), Interrupted> {
+    let WantedStep { state, predicted, reduction, .. } = *wanted;
     let (peak, range) = (attraction.law.peak, attraction.law.range);
-    let Some(course) = Course::of(wanted, peak) else { return (None, 0) };
+    let Some(course) = Course::of(wanted, peak) else { return Ok((None, 0)) };
     let closes = -predicted.noise.max(course.slack / peak * range);
     let mut contact = predicted.contact.to_vec();
     let mut steps = 0;
     for _ in 0..ROUNDS {
-        if stop.stops() {
-            break;
-        }
         let linear = Linear::new(attraction, state, &contact);
         let left = linear.left(wanted, &contact);
-        let Some(solution) = linear.solve(problem, attraction, wanted, &left) else { break };
+        let Some(solution) = linear.solve(problem, attraction, wanted, &left)? else { break };
         steps += solution.steps;
         let change = state.cells.carry(&linear.both, &solution.change);
         let opening = state.cells.carry(&linear.both, &solution.opening);
         let open = || (0..change.len()).filter(|&i| contact[i] <= 0.0);
         // Beyond the plain update.
-        if stop.stops() || !course.allows(extremes(open().map(|i| -change[i])), reduction) {
+        if !course.allows(extremes(open().map(|i| -change[i])), reduction) {
             break;
         }
         let closing: Vec<usize> = open().filter(|&i| state.gap[i] + opening[i] < closes).collect();
@@ -181,9 +182,9 @@ pub fn step(
         } else {
             Some(step.trial(attraction, 1.0).0)
         };
-        return (trial, steps);
+        return Ok((trial, steps));
     }
-    (None, steps)
+    Ok((None, steps))
 }
 
 /// A step as it is taken.

@@ -21,7 +21,7 @@ use super::law::AttractionLaw;
 use crate::geometry::{Grid, Window};
 use crate::kernel::Inverse;
 use crate::real::largest_difference;
-use contact_model::{Boundary, Stop};
+use contact_model::{Boundary, Interrupted, Stop};
 
 // Half and twice the value of each constant below change the work by less than 3 % (11 paths of short range with
 // 65 cells a side, at a tolerance of 1e-5).
@@ -60,6 +60,9 @@ pub struct FrontLattice<'a> {
 /// Follows the fronts of a state from the attraction of its gaps, `to.attraction`, to where they come to rest
 /// under W, or part of the way. On return `to` holds the tractions there.
 ///
+/// # Errors
+/// [`Interrupted`] by the stop; `to` is then as it was.
+///
 /// Cost: for each cell and round a product with the part of W within its reach.
 pub fn follow(
     attraction: &Attraction,
@@ -67,9 +70,9 @@ pub fn follow(
     state: &Equilibrium,
     to: &mut Tractions<'_>,
     stop: Stop<'_>,
-) {
+) -> Result<(), Interrupted> {
     let FrontLattice { inverse, grid, boundary } = lattice;
-    let Some(window) = state.cells.window() else { return };
+    let Some(window) = state.cells.window() else { return Ok(()) };
     let mut fronts = Fronts::new(attraction, inverse, state, window);
     let change = largest_difference(to.attraction, &state.attraction);
     let least = (BALANCED * attraction.law.peak).min(SHARE * change);
@@ -93,11 +96,15 @@ pub fn follow(
         }
         beside.retain(|&i| fronts.is_off_balance(i, least));
         out_of_balance = beside;
-        if out_of_balance.is_empty() || stop.stops() {
+        if out_of_balance.is_empty() {
             break;
+        }
+        if stop.stops() {
+            return Err(Interrupted);
         }
     }
     fronts.write(to);
+    Ok(())
 }
 
 /// The gaps of a state while its fronts are followed.

@@ -18,7 +18,7 @@ use crate::active_set::{
 };
 use crate::geometry::CellSet;
 use crate::real::{each, largest_difference, smallest, sum};
-use contact_model::{Status, Stop};
+use contact_model::{Interrupted, Status, Stop};
 use std::sync::Arc;
 
 // Half and twice the value of `UPDATES`, `AHEAD` and `FIRST` change the work by less than 1 % (34 paths with 65
@@ -45,6 +45,8 @@ pub enum Ended {
     Status(Status),
     /// The attraction cannot hold the force.
     PulledOff,
+    /// It was stopped, and the state has no gap.
+    Interrupted,
 }
 
 /// A search for the equilibrium at one load.
@@ -64,27 +66,31 @@ pub struct Search<'a> {
 
 impl Search<'_> {
     /// The elastic state of the load without attraction, where the load presses: where a first load begins.
-    pub fn first(&mut self, stop: Stop<'_>) -> Equilibrium {
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop.
+    pub fn first(&mut self, stop: Stop<'_>) -> Result<Equilibrium, Interrupted> {
         let first = self.problem.candidates.range().first;
         let target = match self.control {
             AdhesiveControl::Force(f) if f > 0.0 => Control::Force(f),
             // Of a periodic surface the approach under which the plane begins.
             AdhesiveControl::Plane(plane) if plane > first => Control::Approach(plane),
-            AdhesiveControl::Force(_) => return Equilibrium { d: first, ..Equilibrium::default() },
-            AdhesiveControl::Plane(d) => return Equilibrium { d, ..Equilibrium::default() },
+            AdhesiveControl::Force(_) => return Ok(Equilibrium { d: first, ..Equilibrium::default() }),
+            AdhesiveControl::Plane(d) => return Ok(Equilibrium { d, ..Equilibrium::default() }),
         };
         let limits = Limits { tolerance: FIRST, ..self.limits };
         // Without its attraction it is no state of the load.
         let unheard = || stop.stops();
-        let guess = active_set::cold_start(self.problem, target, limits, &unheard);
-        let solved = active_set::solve(self.problem, target, guess, limits, &unheard);
+        let guess = active_set::cold_start(self.problem, target, limits, &unheard)?;
+        let solved = active_set::solve(self.problem, target, guess, limits, &unheard)?;
         let reach = solved.d + self.attraction.law.reach();
         let cells = self.problem.candidates.below(reach).union(&solved.contact);
         let pressure = cells.carry(&solved.contact, &solved.p);
         let zeros = vec![0.0; cells.len()];
         let (attraction, gap) = (zeros.clone(), zeros);
         let steps = solved.steps;
-        Equilibrium { d: solved.d, cells, reach, pressure, attraction, gap, steps, ..Equilibrium::default() }
+        let d = solved.d;
+        Ok(Equilibrium { d, cells, reach, pressure, attraction, gap, steps, ..Equilibrium::default() })
     }
 
     /// Iterates from a state to the equilibrium of the load.
@@ -98,7 +104,9 @@ impl Search<'_> {
     ) -> Result<Equilibrium, Box<(Ended, Equilibrium)>> {
         let tolerance = self.limits.tolerance;
         let (mut progress, mut accuracy) = (UpdateProgress::default(), BETWEEN);
-        self.evaluate(&mut state);
+        if self.evaluate(&mut state, stop).is_err() {
+            return Err(Box::new((Ended::Interrupted, state)));
+        }
         for _ in 0..self.limits.outer_iterations * UPDATES {
             let worst = state.residuals.worst().max(state.mismatch).max(self.load_error(&state));
             stop.residual(worst, tolerance);
@@ -117,23 +125,28 @@ impl Search<'_> {
                 self.update_between_bounds(&mut state, worst, &mut accuracy, stop)
             };
             match updated {
-                Updated::Taken => {}
-                Updated::PulledOff => return Err(Box::new((Ended::PulledOff, state))),
+                Ok(Updated::Taken) => {}
+                Ok(Updated::PulledOff) => return Err(Box::new((Ended::PulledOff, state))),
                 // The state is that of the evaluation before.
-                Updated::Stopped => return Err(Box::new((Ended::Status(Status::Stopped), state))),
+                Err(Interrupted) => return Err(Box::new((Ended::Status(Status::Stopped), state))),
             }
-            self.evaluate(&mut state);
+            if self.evaluate(&mut state, stop).is_err() {
+                return Err(Box::new((Ended::Interrupted, state)));
+            }
             state.updates += 1;
         }
         Err(Box::new((Ended::Status(Status::IterationLimit), state)))
     }
 
     /// One update where the pressure has an upper bound: the attraction of the present gaps, where these are those
-    /// of a contact, and then the whole contact under it. A stopped update leaves the state as it was.
+    /// of a contact, and then the whole contact under it.
     ///
     /// More attraction still closes gaps everywhere, so that this plain iteration follows the branches as it does
     /// without a bound. The other updates stay on them because gaps are convex in the attraction, which a bound
     /// ends.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop; the state is then as it was.
     ///
     /// Cost: a solve of the contact, which becomes more accurate as the attraction comes to rest.
     fn update_between_bounds(
@@ -142,7 +155,7 @@ impl Search<'_> {
         worst: f64,
         accuracy: &mut f64,
         stop: Stop<'_>,
-    ) -> Updated {
+    ) -> Result<Updated, Interrupted> {
         let (range, before) = (self.attraction.law.range, state.clone());
         let left = state.largest_gap_left(self.problem.bounds);
         // A gap that is wrong by a share of the range changes the attraction by as much. The tolerance of a contact
@@ -158,7 +171,7 @@ impl Search<'_> {
         if let AdhesiveControl::Force(asked) = self.control
             && asked + sum(&state.attraction) <= 0.0
         {
-            return Updated::PulledOff;
+            return Ok(Updated::PulledOff);
         }
         let length = self.limits.height.unwrap_or_else(|| state.d.abs().max(range));
         let wanted = worst.min(SETTLED).max(self.limits.tolerance);
@@ -167,23 +180,26 @@ impl Search<'_> {
         let contact = state.contact();
         let p = contact.carry(&state.cells, &state.pressure);
         let guess = (!contact.is_empty()).then_some(Guess { set: contact, p, d: state.d });
-        self.contact_under(state, guess, tolerance, stop);
-        if stop.stops() {
+        let solved = self.contact_under(state, guess, tolerance, stop);
+        if solved.is_err() || stop.stops() {
             *state = before;
-            return Updated::Stopped;
+            return Err(Interrupted);
         }
-        Updated::Taken
+        Ok(Updated::Taken)
     }
 
     /// Where a load begins that follows a smaller one on the branch of approach: with the attraction of that
     /// state, which lies below the one to come. Under a prescribed force its contact is brought to the force by
     /// the updates; under an approach it is solved anew, as the step of the plane is no pressure.
-    pub fn continued(&mut self, last: &Equilibrium, stop: Stop<'_>) -> Equilibrium {
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop.
+    pub fn continued(&mut self, last: &Equilibrium, stop: Stop<'_>) -> Result<Equilibrium, Interrupted> {
         let mut state = last.again();
         if let AdhesiveControl::Plane(_) = self.control {
-            self.contact_under(&mut state, None, FIRST, stop);
+            self.contact_under(&mut state, None, FIRST, stop)?;
         }
-        state
+        Ok(state)
     }
 
     /// The contact under the present attraction: the problem of the gaps `z - G s` without attraction, from a guess
@@ -194,10 +210,16 @@ impl Search<'_> {
         guess: Option<Guess>,
         tolerance: f64,
         stop: Stop<'_>,
-    ) {
+    ) -> Result<(), Interrupted> {
         let grid = self.problem.grid();
         let mut lifted = Vec::new();
-        self.problem.operators.exact(&state.cells, &state.attraction, &CellSet::all(grid), &mut lifted);
+        self.problem.operators.exact(
+            &state.cells,
+            &state.attraction,
+            &CellSet::all(grid),
+            &mut lifted,
+            stop,
+        )?;
         lifted.iter_mut().zip(self.problem.candidates.z()).for_each(|(u, z)| *u = z - *u);
         // The plane of first touch is that of these gaps.
         let first = smallest(&lifted);
@@ -216,7 +238,7 @@ impl Search<'_> {
             if self.problem.bounds != Bounds::Unlimited {
                 state.pressure.fill(0.0);
             }
-            return;
+            return Ok(());
         }
         each(&mut lifted, |z| *z -= first);
         let lifted = Candidates::new(grid, Arc::new(lifted));
@@ -226,26 +248,34 @@ impl Search<'_> {
         // A contact under an attraction that is not its own yet.
         let unheard = || stop.stops();
         let guess = match guess {
-            Some(guess) => Guess { d: guess.d - first, ..guess },
+            Some(guess) => Ok(Guess { d: guess.d - first, ..guess }),
             None => active_set::cold_start(self.problem, target, limits, &unheard),
         };
-        let solved = match target {
+        let solved = guess.and_then(|guess| match target {
             Control::Approach(plane) if holds_plane => self.contact_at_plane(plane, guess, limits, &unheard),
             target => active_set::solve(self.problem, target, guess, limits, &unheard),
-        };
+        });
         (self.problem.candidates, self.problem.coarser) = (candidates, coarser);
+        let solved = solved?;
         let cells = state.cells.union(&solved.contact);
         state.take_cells(cells, state.reach);
         state.pressure = state.cells.carry(&solved.contact, &solved.p);
         state.d = solved.d + first;
         state.steps += solved.steps;
+        Ok(())
     }
 
     /// The contact at a mean plane, which is the approach less the displacement by the constant in the kernel. The
     /// plane rises with the approach, but more slowly.
     ///
     /// Cost: some five solves of the contact, each from the one before.
-    fn contact_at_plane(&mut self, plane: f64, guess: Guess, limits: Limits, stop: Stop<'_>) -> Solved {
+    fn contact_at_plane(
+        &mut self,
+        plane: f64,
+        guess: Guess,
+        limits: Limits,
+        stop: Stop<'_>,
+    ) -> Result<Solved, Interrupted> {
         let shift = self.problem.operators.table().shift();
         let length = limits.height.unwrap_or(plane);
         let (mut low, mut high) = (plane, f64::INFINITY);
@@ -254,7 +284,7 @@ impl Search<'_> {
         let mut steps = 0;
         loop {
             let d = guess.d;
-            let mut solved = active_set::solve(self.problem, Control::Approach(d), guess, limits, stop);
+            let mut solved = active_set::solve(self.problem, Control::Approach(d), guess, limits, stop)?;
             steps += solved.steps;
             let miss = d - shift * sum(&solved.p) - plane;
             *(if miss > 0.0 { &mut high } else { &mut low }) = d;
@@ -270,7 +300,7 @@ impl Search<'_> {
             let is_narrow = next <= low || next >= high;
             if is_met || is_narrow || !next.is_finite() || stop.stops() {
                 solved.steps = steps;
-                return solved;
+                return Ok(solved);
             }
             before = Some((d, miss));
             guess = Guess { set: solved.contact, p: solved.p, d: next };
@@ -286,12 +316,16 @@ impl Search<'_> {
 
     /// Evaluates the gap with the exact operator on all cells within reach, and how far the state is from an
     /// equilibrium.
-    fn evaluate(&mut self, state: &mut Equilibrium) {
-        self.evaluate_gap(state);
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop; the gap is then undefined.
+    fn evaluate(&mut self, state: &mut Equilibrium, stop: Stop<'_>) -> Result<(), Interrupted> {
+        self.evaluate_gap(state, stop)?;
         self.measure(state);
+        Ok(())
     }
 
-    fn evaluate_gap(&mut self, state: &mut Equilibrium) {
+    fn evaluate_gap(&mut self, state: &mut Equilibrium, stop: Stop<'_>) -> Result<(), Interrupted> {
         let Self { problem, attraction, control, .. } = self;
         let law = attraction.law;
         let shift = problem.operators.table().shift();
@@ -304,7 +338,7 @@ impl Search<'_> {
         }
         loop {
             let net = state.net();
-            problem.operators.exact(&state.cells, &net, &state.cells, &mut state.gap);
+            problem.operators.exact(&state.cells, &net, &state.cells, &mut state.gap, stop)?;
             let lowest = smallest(&state.gap).min(0.0);
             problem.candidates.add_to(&state.cells, &mut state.gap);
             let force = sum(&state.pressure);
@@ -338,6 +372,7 @@ impl Search<'_> {
                 break;
             }
         }
+        Ok(())
     }
 
     /// Residuals and mismatch of a state whose gap is evaluated.

@@ -298,7 +298,7 @@ fn stability_is_that_of_the_dense_matrix_at_an_approach_and_at_a_force() {
         let short = Attraction::short((0.35 * 0.4f64).powi(2) / PI, grid, boundary);
         for (d, law) in [0.4, 0.8].into_iter().flat_map(|d| [(d, law(0.3, 0.2)), (d, short.clone())]) {
             let mut search = search(&mut problem, &law, AdhesiveControl::Plane(d), false);
-            let start = search.first(&never);
+            let start = search.first(&never).unwrap();
             let state = search.from(start, &never).unwrap();
             let all = CellSet::all(grid);
             // The slope of a short range has a jump at its reach.
@@ -309,7 +309,7 @@ fn stability_is_that_of_the_dense_matrix_at_an_approach_and_at_a_force() {
             let contact: Vec<bool> = pressure.iter().map(|p| *p > 0.0).collect();
             let slopes = slopes(&law, &all, &gap);
             let at = |problem: &mut Problem, control| {
-                respond(problem, &law, &state, asked(control, 1e-10)).stability
+                respond(problem, &law, &state, asked(control, 1e-10)).unwrap().stability
             };
             let (approach, force) = (
                 at(&mut problem, AdhesiveControl::Plane(d)),
@@ -342,12 +342,12 @@ fn every_state_of_a_path_is_a_minimum_that_newton_finds_too() {
             let mut last: Option<Equilibrium> = None;
             for d in [-0.6, -0.2, 0.1, 0.4, 1.0, 0.5, 0.1, -0.1, -0.3, -0.6, -1.5] {
                 let mut search = search(&mut problem, &law, AdhesiveControl::Plane(d), false);
-                let start = last.take().unwrap_or_else(|| search.first(&never));
+                let start = last.take().unwrap_or_else(|| search.first(&never).unwrap());
                 let before = gaps(grid, &start);
                 let state = search.from(start, &never).unwrap();
                 let found = gaps(grid, &state);
                 let control = AdhesiveControl::Plane(d);
-                let response = respond(&mut problem, &law, &state, asked(control, 1e-6));
+                let response = respond(&mut problem, &law, &state, asked(control, 1e-6)).unwrap();
                 // Beyond the reach of the attraction gaps are not known to the solver.
                 let all: Vec<f64> = found
                     .iter()
@@ -386,7 +386,7 @@ fn newton_steps_find_the_states_of_the_plain_iteration() {
                 let mut found = Vec::new();
                 for (plain, last) in [false, true].into_iter().zip(&mut last) {
                     let mut search = search(&mut problem, &law, AdhesiveControl::Plane(d), plain);
-                    let start = last.take().unwrap_or_else(|| search.first(&never));
+                    let start = last.take().unwrap_or_else(|| search.first(&never).unwrap());
                     let state = search.from(start, &never).unwrap();
                     found.push((gaps(grid, &state), energy(&problem, &law, &state), state.force()));
                     *last = Some(state);
@@ -424,14 +424,14 @@ fn followed_fronts_go_on_and_pass_no_equilibrium() {
             AdhesiveControl::Force(5.0 * attraction.law.peak)
         };
         let mut search = search(&mut problem, &attraction, control, true);
-        let first = search.first(&never);
+        let first = search.first(&never).unwrap();
         let end = search.from(first.clone(), &never).unwrap();
         search.limits.outer_iterations = 0;
         let (_, state) = *search.from(first, &never).unwrap_err();
         let (mut pressure, mut next) = (state.pressure.clone(), state.lawful.clone());
         let mut to = Tractions { pressure: &mut pressure, attraction: &mut next };
         let lattice = FrontLattice { inverse: attraction.inverse().unwrap(), grid, boundary };
-        follow(&attraction, lattice, &state, &mut to, &never);
+        follow(&attraction, lattice, &state, &mut to, &never).unwrap();
         let peak = attraction.law.peak;
         let end = state.cells.carry(&end.cells, &end.attraction);
         for ((next, lawful), end) in next.iter().zip(&state.lawful).zip(&end) {
@@ -480,7 +480,8 @@ fn compared(seeds: std::ops::Range<u64>) -> (usize, Vec<String>) {
                 let mut found = Vec::new();
                 for plain in [true, false] {
                     let mut search = search(&mut problem, &law, control, plain);
-                    let start = last.as_ref().map_or_else(|| search.first(&never), Equilibrium::again);
+                    let start =
+                        last.as_ref().map_or_else(|| search.first(&never).unwrap(), Equilibrium::again);
                     found.push(search.from(start, &never).map_err(|ended| ended.0));
                 }
                 count += 1;
@@ -541,12 +542,12 @@ fn stiffness_by_differences(boundary: Boundary) {
     let mut problem = problem(grid, &z, boundary);
     let at = |problem: &mut Problem, law: &Attraction, d: f64| {
         let mut search = search(problem, law, AdhesiveControl::Plane(d), false);
-        let start = search.first(&never);
+        let start = search.first(&never).unwrap();
         search.from(start, &never).unwrap()
     };
     for (law, d) in [(&law(0.3, 0.15), -0.4), (&law(0.3, 0.15), 0.6)] {
         let state = at(&mut problem, law, d);
-        let response = respond(&mut problem, law, &state, asked(AdhesiveControl::Plane(d), 1e-6));
+        let response = respond(&mut problem, law, &state, asked(AdhesiveControl::Plane(d), 1e-6)).unwrap();
         let step = 1e-4;
         let (above, below) =
             (at(&mut problem, law, d + step).force(), at(&mut problem, law, d - step).force());
@@ -567,7 +568,7 @@ fn forces_near_zero_are_met_relative_to_the_pressure() {
     let law = law(0.3, 0.2);
     let mut problem = problem(grid, &z, Boundary::Free);
     let mut search = search(&mut problem, &law, AdhesiveControl::Force(0.0), false);
-    let start = search.first(&never);
+    let start = search.first(&never).unwrap();
     let zero = search.from(start, &never).unwrap();
     let pressed: f64 = zero.pressure.iter().sum();
     for asked in [5.6e-17, -1e-300, 1e-12 * pressed, -1e-5 * pressed, 2e-3 * pressed] {
@@ -589,7 +590,7 @@ fn a_force_beyond_the_pull_off_force_is_an_error() {
     let law = law(0.3, 0.2);
     let mut problem = problem(grid, &z, Boundary::Free);
     let mut search = search(&mut problem, &law, AdhesiveControl::Force(0.0), false);
-    let start = search.first(&never);
+    let start = search.first(&never).unwrap();
     let state = search.from(start, &never).unwrap();
     assert!(state.force().abs() < 1e-12 && !state.contact().is_empty());
     search.control = AdhesiveControl::Force(-1e3);
@@ -636,7 +637,7 @@ fn no_attachment_or_detachment_of_a_single_cell_lowers_the_energy_of_a_short_ran
         let mut last: Option<Equilibrium> = None;
         for d in [-0.2, 0.2, 0.8, 0.3, -0.1, -0.3] {
             let mut search = search(&mut problem, &short, AdhesiveControl::Plane(d), false);
-            let start = last.take().unwrap_or_else(|| search.first(&never));
+            let start = last.take().unwrap_or_else(|| search.first(&never).unwrap());
             let state = search.from(start, &never).unwrap();
             let d = state.d;
             let u = |p: &[f64]| -> Vec<f64> { g.iter().map(|row| crate::real::dot(row, p)).collect() };

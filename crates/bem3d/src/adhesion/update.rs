@@ -11,7 +11,7 @@ use crate::active_set::Problem;
 use crate::kernel::Inverse;
 use crate::linear::{Fixed, StoppingCriteria};
 use crate::real::{each, largest, largest_difference, sum, update};
-use contact_model::Stop;
+use contact_model::{Interrupted, Stop};
 
 // Half and twice the value of each constant below change the work by less than 3 % (34 paths of rough maps and
 // of spheres with 65 cells a side, at a tolerance of 1e-5). Half of `BALANCE` takes 3.3 % more. The work with Dugdale's law alone changes by up to 6 % with `PLAIN_REDUCTION` and by up to 5 % with `SETTLED`.
@@ -124,8 +124,6 @@ pub enum Updated {
     Taken,
     /// The attraction cannot hold the force.
     PulledOff,
-    /// It was stopped, and pressure and attraction of the state are as they were.
-    Stopped,
 }
 
 /// The attraction at which an update aims, and the kind of the update.
@@ -154,39 +152,35 @@ struct Uncorrected {
 
 impl Updates<'_> {
     /// One update: the attraction of the present gaps, and the pressure that then closes the contact.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop; pressure and attraction of the state are then as they were.
     pub fn update(
         &mut self,
         state: &mut Equilibrium,
         progress: &mut UpdateProgress,
         stop: Stop<'_>,
-    ) -> Updated {
+    ) -> Result<Updated, Interrupted> {
         let wanted = self.wanted(state);
         let mut uncorrected = None;
         if let Some(reduction) = self.newton_reduction(&wanted, progress) {
-            let Some(held) = self.uncorrected(state, &wanted, false, stop) else { return Updated::PulledOff };
-            let trial = self.newton_step(state, (&wanted, &held), reduction, stop);
-            if stop.stops() {
-                return Updated::Stopped;
-            }
+            let Some(held) = self.uncorrected(state, &wanted, false, stop)? else {
+                return Ok(Updated::PulledOff);
+            };
+            let trial = self.newton_step(state, (&wanted, &held), reduction, stop)?;
             if let Some(trial) = trial {
-                return self.take(state, trial.pressure, trial.attraction);
+                return Ok(self.take(state, trial.pressure, trial.attraction));
             }
             progress.refuse();
             uncorrected = Some(held).filter(|_| !wanted.follows);
         }
         if uncorrected.is_none() {
-            uncorrected = self.uncorrected(state, &wanted, wanted.follows, stop);
+            uncorrected = self.uncorrected(state, &wanted, wanted.follows, stop)?;
         }
-        let Some(mut next) = uncorrected else { return Updated::PulledOff };
-        if stop.stops() {
-            return Updated::Stopped;
-        }
-        state.steps += self.close(state, &mut next, &wanted, stop);
-        if stop.stops() {
-            return Updated::Stopped;
-        }
+        let Some(mut next) = uncorrected else { return Ok(Updated::PulledOff) };
+        state.steps += self.close(state, &mut next, &wanted, stop)?;
         self.lead_through(state, &mut next, &wanted, progress);
-        self.take(state, next.pressure, next.attraction)
+        Ok(self.take(state, next.pressure, next.attraction))
     }
 
     /// The attraction of the present gaps: a share of its change at a prescribed mean gap after many updates,
@@ -226,7 +220,7 @@ impl Updates<'_> {
         (wanted, held): (&Wanted, &Uncorrected),
         reduction: f64,
         stop: Stop<'_>,
-    ) -> Option<Trial> {
+    ) -> Result<Option<Trial>, Interrupted> {
         let predicted = Predicted {
             pressure: &held.pressure,
             attraction: &held.attraction,
@@ -235,9 +229,9 @@ impl Updates<'_> {
             noise: held.contact.noise,
         };
         let wanted = WantedStep { state, predicted: &predicted, fixed: wanted.fixed, reduction, stop };
-        let (trial, steps) = step(self.problem, self.attraction, &wanted);
+        let (trial, steps) = step(self.problem, self.attraction, &wanted)?;
         state.steps += steps;
-        trial
+        Ok(trial)
     }
 
     /// The wanted attraction, or with `follows` that to which the fronts move, and the state that it leads to
@@ -248,12 +242,12 @@ impl Updates<'_> {
         wanted: &Wanted,
         follows: bool,
         stop: Stop<'_>,
-    ) -> Option<Uncorrected> {
+    ) -> Result<Option<Uncorrected>, Interrupted> {
         let mut attraction = wanted.attraction.clone();
         let inverse = self.attraction.inverse().filter(|_| follows);
-        let pressure = self.held(state, &mut attraction, inverse, stop)?;
-        let (gap, contact) = self.gap_after(state, (&pressure, &attraction), wanted.fixed);
-        Some(Uncorrected { pressure, attraction, gap, contact })
+        let Some(pressure) = self.held(state, &mut attraction, inverse, stop)? else { return Ok(None) };
+        let (gap, contact) = self.gap_after(state, (&pressure, &attraction), wanted.fixed, stop)?;
+        Ok(Some(Uncorrected { pressure, attraction, gap, contact }))
     }
 
     /// Takes the next state far along its change where the iteration is in a bottleneck.
@@ -296,13 +290,13 @@ impl Updates<'_> {
         attraction: &mut [f64],
         inverse: Option<&Inverse>,
         stop: Stop<'_>,
-    ) -> Option<Vec<f64>> {
+    ) -> Result<Option<Vec<f64>>, Interrupted> {
         let mut pressure = state.pressure.clone();
         if let Some(inverse) = inverse {
             let boundary = self.problem.operators.table().boundary();
             let lattice = FrontLattice { inverse, grid: self.problem.grid(), boundary };
             let mut to = Tractions { pressure: &mut pressure, attraction: &mut *attraction };
-            follow(self.attraction, lattice, state, &mut to, stop);
+            follow(self.attraction, lattice, state, &mut to, stop)?;
         } else {
             // A contact cell that is attracted more bears as much more: its net pressure stays.
             for ((p, now), before) in pressure.iter_mut().zip(&*attraction).zip(&state.attraction) {
@@ -311,10 +305,10 @@ impl Updates<'_> {
                 }
             }
         }
-        let AdhesiveControl::Force(force) = self.control else { return Some(pressure) };
+        let AdhesiveControl::Force(force) = self.control else { return Ok(Some(pressure)) };
         let (held, wanted) = (sum(&pressure), force + sum(attraction));
         if wanted <= 0.0 {
-            return None;
+            return Ok(None);
         }
         if held > 0.0 {
             each(&mut pressure, |p| *p *= wanted / held);
@@ -322,7 +316,7 @@ impl Updates<'_> {
         {
             pressure[first] = wanted;
         }
-        Some(pressure)
+        Ok(Some(pressure))
     }
 
     /// The gap of a state after pressure and attraction have changed, in single precision (the error is
@@ -332,14 +326,15 @@ impl Updates<'_> {
         state: &Equilibrium,
         (pressure, next): (&[f64], &[f64]),
         fixed: Fixed,
-    ) -> (Vec<f64>, CarryingCells) {
+        stop: Stop<'_>,
+    ) -> Result<(Vec<f64>, CarryingCells), Interrupted> {
         let mut changed: Vec<f64> = pressure.iter().zip(next).map(|(p, s)| p - s).collect();
         let before = state.pressure.iter().zip(&state.attraction);
         changed.iter_mut().zip(before).for_each(|(changed, (p, s))| *changed -= p - s);
         let mut gap = state.gap.clone();
         if largest(&changed) > 0.0 {
             let mut u = Vec::new();
-            self.problem.operators.rough(&state.cells, &changed, &state.cells, &mut u);
+            self.problem.operators.rough(&state.cells, &changed, &state.cells, &mut u, stop)?;
             update(&mut gap, &u, |gap, u| *gap += u);
         }
         let offset: f64 = match fixed {
@@ -352,7 +347,7 @@ impl Updates<'_> {
         };
         each(&mut gap, |g| *g -= offset);
         let contact = CarryingCells::new(pressure, &gap, self.problem.operators.tuning().noise);
-        (gap, contact)
+        Ok((gap, contact))
     }
 
     /// Corrects the pressure of the contact so that its gap vanishes. Returns the steps.
@@ -362,20 +357,22 @@ impl Updates<'_> {
         next: &mut Uncorrected,
         wanted: &Wanted,
         stop: Stop<'_>,
-    ) -> usize {
+    ) -> Result<usize, Interrupted> {
         let reduction = if wanted.plain { PLAIN_REDUCTION } else { REDUCTION };
         let set = state.cells.filter(&next.contact.marked, |m| m > 0.0);
         let Problem { operators, workspace, .. } = &mut *self.problem;
-        let Some(recipe) = operators.planner().system(&set, next.contact.count, false) else { return 0 };
+        let Some(recipe) = operators.planner().system(&set, next.contact.count, false) else {
+            return Ok(0);
+        };
         let mut right: Vec<f64> = set.carry(&state.cells, &next.gap);
         each(&mut right, |r| *r = -*r);
         let criteria = StoppingCriteria { reduction, energy: None, floor: 0.0, steps: STEPS };
         workspace.begin_load();
-        workspace.take(operators, set, recipe);
-        let outcome = workspace.solve(operators, &mut right, wanted.fixed, criteria, stop);
+        workspace.take(operators, set, recipe, stop)?;
+        let outcome = workspace.solve(operators, &mut right, wanted.fixed, criteria, stop)?;
         let correction = state.cells.carry(workspace.set(), &right);
         update(&mut next.pressure, &correction, |p, x| *p = (*p + x).max(0.0));
-        outcome.steps
+        Ok(outcome.steps)
     }
 }
 

@@ -3,12 +3,12 @@
 
 use super::increment::FrictionLimits;
 use super::state::{
-    ForceTooLarge, FrictionLoad, FrictionSolver, FrictionState, PressedCells, SlipMemory, SlipStep,
+    FrictionLoad, FrictionSolver, FrictionState, NotAdvanced, PressedCells, SlipMemory, SlipStep,
 };
 use crate::active_set::{
     self, Candidates, ContactGap, Continuation, Control, Guess, Limits, Problem, Residuals, Solved,
 };
-use contact_model::{Status, Stop};
+use contact_model::{Interrupted, Status, Stop};
 use std::sync::Arc;
 
 /// Rounds at most.
@@ -89,21 +89,21 @@ pub fn advance(
     load: CoupledLoad,
     start: CoupledGuess,
     stop: Stop<'_>,
-) -> Result<CoupledState, ForceTooLarge> {
+) -> Result<CoupledState, NotAdvanced> {
     let CoupledSurface { problem, undeformed: z, friction } = surface;
     let CoupledGuess { pressure: mut guess, mut tractions } = start;
     let CoupledLoad { normal: control, tangential, normal_limits, tangential_limits } = load;
     let from = tractions.as_ref().unwrap_or(before);
-    let mut raised = friction.normal_displacement(from).unwrap_or_else(|| vec![0.0; z.len()]);
+    let mut raised = friction.normal_displacement(from, stop)?.unwrap_or_else(|| vec![0.0; z.len()]);
     deform(problem, z, &raised);
     let (mut last, mut contraction, mut idle, mut rounds) = (f64::INFINITY, None, 0, 0);
     loop {
         rounds += 1;
         let from = match guess.take() {
             Some(guess) => guess,
-            None => active_set::cold_start(problem, control, normal_limits, stop),
+            None => active_set::cold_start(problem, control, normal_limits, stop)?,
         };
-        let mut normal = active_set::solve(problem, control, from, normal_limits, stop);
+        let mut normal = active_set::solve(problem, control, from, normal_limits, stop)?;
         let contact = PressedCells { cells: &normal.contact, pressure: &normal.p };
         let start = tractions.as_ref().map(|last| (&last.cells, &last.traction[..]));
         let state = friction.advance(
@@ -111,10 +111,10 @@ pub fn advance(
             tangential_limits,
             stop,
         )?;
-        let next = friction.normal_displacement(&state.memory).unwrap_or_else(|| vec![0.0; z.len()]);
+        let next = friction.normal_displacement(&state.memory, stop)?.unwrap_or_else(|| vec![0.0; z.len()]);
         let far = next.iter().zip(&raised).fold(0.0, |far: f64, (a, b)| far.max((a - b).abs()));
         deform(problem, z, &next);
-        measure(problem, &mut normal, load, &next, &raised);
+        measure(problem, &mut normal, load, (&next, &raised), stop)?;
         if rounds > 1 {
             contraction = Some(far / last);
         }
@@ -143,7 +143,13 @@ fn deform(problem: &mut Problem, z: &[f64], raised: &[f64]) {
 
 /// Measures the residuals of a pressure with the normal displacement `next` of other tractions than it was found
 /// with, whose displacement is `raised`, on every cell that may touch the surface that these deform.
-fn measure(problem: &mut Problem, solved: &mut Solved, load: CoupledLoad, next: &[f64], raised: &[f64]) {
+fn measure(
+    problem: &mut Problem,
+    solved: &mut Solved,
+    load: CoupledLoad,
+    (next, raised): (&[f64], &[f64]),
+    stop: Stop<'_>,
+) -> Result<(), Interrupted> {
     let (grid, bounds) = (problem.grid(), problem.bounds);
     let Continuation { checked, gap, reach } = &mut solved.continuation;
     // First u + z.
@@ -158,7 +164,7 @@ fn measure(problem: &mut Problem, solved: &mut Solved, load: CoupledLoad, next: 
     let others = problem.candidates.below(d).without(checked);
     if !others.is_empty() {
         let mut u = Vec::new();
-        problem.operators.exact(&solved.contact, &solved.p, &others, &mut u);
+        problem.operators.exact(&solved.contact, &solved.p, &others, &mut u, stop)?;
         problem.candidates.add_to(&others, &mut u);
         let all = checked.union(&others);
         let mut whole = all.carry(checked, gap);
@@ -173,4 +179,5 @@ fn measure(problem: &mut Problem, solved: &mut Solved, load: CoupledLoad, next: 
     let height = load.normal_limits.height.unwrap_or(d);
     let under = ContactGap { contact: &solved.contact, left: &left, checked, gap };
     solved.residuals = Residuals::measure(bounds, &solved.p, under, height);
+    Ok(())
 }

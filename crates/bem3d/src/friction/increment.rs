@@ -6,7 +6,7 @@ use crate::law::{ConvexLaw, Descent, Discs, descend, excess, length, sums, total
 use crate::linear::StoppingCriteria;
 use crate::operator::{InfluenceOperator, TangentialOperators};
 use crate::real::{binary_unit, dot, each, largest, sum, update};
-use contact_model::{Status, Stop};
+use contact_model::{Interrupted, Status, Stop};
 use serde::{Deserialize, Serialize};
 
 /// What is prescribed, nondimensional; components along x and y.
@@ -154,6 +154,9 @@ struct IncrementSolver<'a> {
 /// raises it. Where these steps make no progress, projected gradients with the same line search take over,
 /// which converge from any start; Newton's steps go on from there.
 ///
+/// # Errors
+/// [`Interrupted`] by the stop before the first tractions are known.
+///
 /// Cost: some 5 to 10 steps, of 2 applications and those of a handful of conjugate gradients each.
 /// Source: the conditions are those of Kalker's variational principle (J. J. Kalker, Three-Dimensional Elastic
 /// Bodies in Rolling Contact, 1990, chapter 4), the linearisation is that of P. Alart and A. Curnier, Comput.
@@ -164,9 +167,9 @@ pub fn solve(
     start: Vec<f64>,
     limits: FrictionLimits,
     stop: Stop<'_>,
-) -> IncrementState {
+) -> Result<IncrementState, Interrupted> {
     if largest(increment.limit) <= 0.0 {
-        return free(increment);
+        return Ok(free(increment));
     }
     from_mean(increment, |increment| {
         in_units(increment, start, |increment, start| {
@@ -179,8 +182,8 @@ pub fn solve(
 /// Only their difference is in the conditions, and after long slip both are much larger than it.
 fn from_mean(
     increment: Increment<'_>,
-    solve: impl FnOnce(Increment<'_>) -> IncrementState,
-) -> IncrementState {
+    solve: impl FnOnce(Increment<'_>) -> Result<IncrementState, Interrupted>,
+) -> Result<IncrementState, Interrupted> {
     let Increment { limit, reference, control, displacement, .. } = increment;
     let (n, most) = (limit.len(), sum(limit));
     let mean: [f64; 2] = std::array::from_fn(|component| dot(limit, &reference[component * n..][..n]) / most);
@@ -196,13 +199,13 @@ fn from_mean(
     match control {
         TangentialControl::Displacement(delta) => {
             let control = TangentialControl::Displacement(from(delta));
-            let found = solve(Increment { reference: &less, control, displacement, ..increment });
-            IncrementState { displacement: delta, ..found }
+            let found = solve(Increment { reference: &less, control, displacement, ..increment })?;
+            Ok(IncrementState { displacement: delta, ..found })
         }
         TangentialControl::Force(_) => {
-            let found = solve(Increment { reference: &less, displacement, ..increment });
+            let found = solve(Increment { reference: &less, displacement, ..increment })?;
             let [x, y] = found.displacement;
-            IncrementState { displacement: [x + mean[0], y + mean[1]], ..found }
+            Ok(IncrementState { displacement: [x + mean[0], y + mean[1]], ..found })
         }
     }
 }
@@ -211,8 +214,8 @@ fn from_mean(
 fn in_units(
     increment: Increment<'_>,
     mut start: Vec<f64>,
-    solve: impl FnOnce(Increment<'_>, Vec<f64>) -> IncrementState,
-) -> IncrementState {
+    solve: impl FnOnce(Increment<'_>, Vec<f64>) -> Result<IncrementState, Interrupted>,
+) -> Result<IncrementState, Interrupted> {
     let Increment { limit, reference, control, displacement, .. } = increment;
     let [dx, dy] = match control {
         TangentialControl::Displacement(displacement) => displacement,
@@ -230,13 +233,13 @@ fn in_units(
     each(&mut start, |q| *q /= unit);
     let displacement = pair(displacement);
     let scaled = Increment { limit: &limit, reference: &reference, control, displacement, ..increment };
-    let mut found = solve(scaled, start);
+    let mut found = solve(scaled, start)?;
     for vector in [&mut found.traction, &mut found.slip] {
         each(vector, |v| *v *= unit);
     }
     found.displacement = found.displacement.map(|delta| delta * unit);
     found.length *= unit;
-    found
+    Ok(found)
 }
 
 /// The same by projected gradients alone, in at most the given number of steps.
@@ -247,13 +250,13 @@ pub fn by_gradients(
     start: Vec<f64>,
     limits: FrictionLimits,
     steps: usize,
-) -> IncrementState {
+) -> Result<IncrementState, Interrupted> {
     in_units(increment, start, |increment, start| {
         let mut solver = IncrementSolver::new(systems, increment, start, limits);
         solver.admit();
-        solver.displace();
-        solver.descend(steps, &contact_model::never);
-        solver.state(Status::IterationLimit)
+        solver.displace(&contact_model::never)?;
+        solver.descend(steps, &contact_model::never)?;
+        Ok(solver.state(Status::IterationLimit))
     })
 }
 
@@ -333,9 +336,9 @@ impl<'a> IncrementSolver<'a> {
         }
     }
 
-    fn iterate(mut self, stop: Stop<'_>) -> IncrementState {
+    fn iterate(mut self, stop: Stop<'_>) -> Result<IncrementState, Interrupted> {
         self.admit();
-        self.displace();
+        self.displace(stop)?;
         self.room.take(self.increment.cells);
         self.room.weights = None;
         let mut best = self.state(Status::IterationLimit);
@@ -359,7 +362,8 @@ impl<'a> IncrementSolver<'a> {
             }
             self.iterations += 1;
             let before = self.gap;
-            let moved = since_best <= PATIENCE && self.newton(stop);
+            let moved = if since_best <= PATIENCE { self.newton(stop) } else { Ok(false) };
+            let Ok(moved) = moved else { break Status::Stopped };
             if moved {
                 if self.whole && self.gap > SLOW * before {
                     self.reduction = (FURTHER * self.reduction).max(LEAST_REDUCTION);
@@ -368,11 +372,13 @@ impl<'a> IncrementSolver<'a> {
                 if gradients > 1 << 12 {
                     break Status::Stagnated;
                 }
-                self.descend(gradients, stop);
+                if self.descend(gradients, stop).is_err() {
+                    break Status::Stopped;
+                }
                 (gradients, since_best) = (2 * gradients, 0);
             }
         };
-        IncrementState { status, iterations: self.iterations, steps: self.steps, ..best }
+        Ok(IncrementState { status, iterations: self.iterations, steps: self.steps, ..best })
     }
 
     fn force(&self) -> Option<[f64; 2]> {
@@ -393,16 +399,17 @@ impl<'a> IncrementSolver<'a> {
     }
 
     /// Evaluates the displacements of the present tractions.
-    fn displace(&mut self) {
-        self.u = self.exact(&self.q.clone());
+    fn displace(&mut self, stop: Stop<'_>) -> Result<(), Interrupted> {
+        self.u = self.exact(&self.q.clone(), stop)?;
         self.slide();
+        Ok(())
     }
 
     /// `K q` without the constant of a periodic kernel.
-    fn exact(&mut self, q: &[f64]) -> Vec<f64> {
+    fn exact(&mut self, q: &[f64], stop: Stop<'_>) -> Result<Vec<f64>, Interrupted> {
         let mut u = Vec::new();
-        exact(self.operators, self.increment.cells, q, self.increment.cells, &mut u);
-        u
+        exact(self.operators, (self.increment.cells, q), self.increment.cells, &mut u, stop)?;
+        Ok(u)
     }
 
     /// The slip under the present displacements, and the duality gap.
@@ -461,10 +468,10 @@ impl<'a> IncrementSolver<'a> {
     }
 
     /// One step of Newton's method. Returns whether it made progress.
-    fn newton(&mut self, stop: Stop<'_>) -> bool {
+    fn newton(&mut self, stop: Stop<'_>) -> Result<bool, Interrupted> {
         let (branch, on_circles) = self.branch();
-        let Some(next) = self.solve_linearised(&branch, on_circles, stop) else { return false };
-        self.go_to(next)
+        let Some(next) = self.solve_linearised(&branch, on_circles, stop)? else { return Ok(false) };
+        self.go_to(next, stop)
     }
 
     /// The cells that stick and slip at present, and the tractions with those of slip cells on their circles.
@@ -488,36 +495,38 @@ impl<'a> IncrementSolver<'a> {
         branch: &SlipBranch,
         mut next: Vec<f64>,
         stop: Stop<'_>,
-    ) -> Option<Vec<f64>> {
+    ) -> Result<Option<Vec<f64>>, Interrupted> {
         let (cells, force) = (self.increment.cells, self.force());
         let shift = self.operators.table().shift();
         let criteria =
             StoppingCriteria { reduction: self.reduction, energy: None, floor: 0.0, steps: INNER_STEPS };
         self.operators.solves += 1;
-        let mut system = self.room.system(self.operators, branch, false)?;
-        let spread = spread_force(&mut system, cells, force, &next);
+        let Some(mut system) = self.room.system(self.operators, branch, false, stop)? else {
+            return Ok(None);
+        };
+        let spread = spread_force(&mut system, cells, force, &next, stop)?;
         // The change of the tractions so far, whose displacements the residual needs.
         let mut change: Vec<f32> = next.iter().zip(&self.q).map(|(next, q)| (next - q) as f32).collect();
         change.iter_mut().zip(&spread).for_each(|(change, spread)| *change += spread);
-        let (displaced, applications) = displacement(&mut system.conditions, cells, &change, shift);
+        let (displaced, applications) = displacement(&mut system.conditions, cells, &change, shift, stop)?;
         let mut right: Vec<f64> = self.w.iter().zip(&displaced).map(|(w, u)| w - f64::from(*u)).collect();
         branch.restrict_f64(&mut right);
         let moved: Vec<f64> = spread.iter().map(|&spread| f64::from(spread)).collect();
         branch.add_turning(&moved, &mut right, -1.0);
-        let outcome = system.solve(&mut right, criteria, stop);
+        let outcome = system.solve(&mut right, criteria, stop)?;
         self.steps += outcome.steps;
         self.operators.applications += applications + outcome.applications;
         for ((next, x), spread) in next.iter_mut().zip(&right).zip(&moved) {
             *next += x + spread;
         }
-        Some(next)
+        Ok(Some(next))
     }
 
     /// Projects tractions onto the admissible ones and moves there, or as far as the energy falls. Returns
     /// whether that made progress.
-    fn go_to(&mut self, mut next: Vec<f64>) -> bool {
+    fn go_to(&mut self, mut next: Vec<f64>, stop: Stop<'_>) -> Result<bool, Interrupted> {
         self.law().project(&mut next, self.force());
-        let u = self.exact(&next);
+        let u = self.exact(&next, stop)?;
         let (mut slope, mut curvature, mut rounding) = (0.0, 0.0, 0.0);
         for ((((q, next), w), from), to) in self.q.iter().zip(&next).zip(&self.w).zip(&self.u).zip(&u) {
             let d = next - q;
@@ -529,7 +538,7 @@ impl<'a> IncrementSolver<'a> {
         let slope = slope + rounding;
         let share = if curvature > 0.0 { slope / curvature } else { f64::from(u8::from(slope > 0.0)) };
         if share.is_nan() || share < USELESS {
-            return false;
+            return Ok(false);
         }
         self.whole = share >= WHOLE;
         if self.whole {
@@ -540,21 +549,21 @@ impl<'a> IncrementSolver<'a> {
             }
         }
         self.slide();
-        true
+        Ok(true)
     }
 
     /// Steps of the fall-back, each of which lowers the energy.
-    fn descend(&mut self, steps: usize, stop: Stop<'_>) {
+    fn descend(&mut self, steps: usize, stop: Stop<'_>) -> Result<(), Interrupted> {
         let (law, force) = (self.law(), self.force());
         let Self { operators, increment, q, w, .. } = self;
         let cells = increment.cells;
         let mut gradient: Vec<f64> = w.iter().map(|w| -w).collect();
         let own = operators.table().own();
         let descent = Descent { law: &law, force, tractions: q, gradient: &mut gradient, own };
-        let displace = |change: &[f64], u: &mut Vec<f64>| exact(operators, cells, change, cells, u);
-        self.steps += descend(descent, displace, steps, stop);
+        let displace = |change: &[f64], u: &mut Vec<f64>| exact(operators, (cells, change), cells, u, stop);
+        self.steps += descend(descent, displace, steps, stop)?;
         self.admit();
-        self.displace();
+        self.displace(stop)
     }
 }
 
@@ -565,17 +574,18 @@ fn spread_force(
     cells: &CellSet,
     force: Option<[f64; 2]>,
     tractions: &[f64],
-) -> Vec<f32> {
+    stop: Stop<'_>,
+) -> Result<Vec<f32>, Interrupted> {
     let mut spread = vec![0.0; tractions.len()];
     if let Some([fx, fy]) = force {
         let BranchSystem { preconditioner, weights, .. } = system;
-        preconditioner.fix_sums(cells, weights);
+        preconditioner.fix_sums(cells, weights, stop)?;
         let [x, y] = total(tractions);
         if let Some(sums) = &preconditioner.sums {
             sums.spread([fx - x, fy - y], &mut spread);
         }
     }
-    spread
+    Ok(spread)
 }
 
 /// The displacement under a change of the tractions in single precision, without the constant of a periodic
@@ -585,12 +595,13 @@ fn displacement(
     cells: &CellSet,
     change: &[f32],
     shift: f64,
-) -> (Vec<f32>, usize) {
+    stop: Stop<'_>,
+) -> Result<(Vec<f32>, usize), Interrupted> {
     let mut displaced = vec![0.0; change.len()];
     if change.iter().all(|change| *change == 0.0) {
-        return (displaced, 0);
+        return Ok((displaced, 0));
     }
-    linearised.kernel.apply(cells, change, cells, &mut displaced);
+    linearised.kernel.apply_until(cells, change, cells, &mut displaced, stop)?;
     let n = cells.len();
     for (displaced, change) in displaced.chunks_exact_mut(n).zip(change.chunks_exact(n)) {
         let mean = shift * sum(change);
@@ -598,18 +609,21 @@ fn displacement(
             *u -= mean as f32;
         }
     }
-    (displaced, 1)
+    Ok((displaced, 1))
 }
 
 /// `u = K q` in double precision, without the constant of a periodic kernel.
+///
+/// # Errors
+/// [`Interrupted`] by the stop; `u` is then undefined.
 pub fn exact(
     operators: &mut TangentialOperators,
-    sources: &CellSet,
-    q: &[f64],
+    (sources, q): (&CellSet, &[f64]),
     targets: &CellSet,
     u: &mut Vec<f64>,
-) {
-    operators.exact(sources, q, targets, u);
+    stop: Stop<'_>,
+) -> Result<(), Interrupted> {
+    operators.exact(sources, q, targets, u, stop)?;
     let shift = operators.table().shift();
     if shift > 0.0 && !targets.is_empty() {
         for (u, sum) in u.chunks_exact_mut(targets.len()).zip(total(q)) {
@@ -618,6 +632,7 @@ pub fn exact(
             }
         }
     }
+    Ok(())
 }
 
 /// Largest length of the vectors of a field.

@@ -10,7 +10,7 @@ use crate::operator::{InfluenceOperator, Planned, TangentialOperators};
 use crate::parts::{Part, Recorder};
 use crate::real::{dot, each, largest, sum, update};
 use crate::tuning::CHUNK;
-use contact_model::Stop;
+use contact_model::{Interrupted, Stop};
 use numerics::parallel::map;
 
 /// Largest `|w|/b` of a slip cell; a cell beyond it is treated as if it did not move.
@@ -136,9 +136,16 @@ pub struct LinearisedFriction<'a> {
 }
 
 impl InfluenceOperator<f32> for LinearisedFriction<'_> {
-    fn apply(&mut self, sources: &CellSet, t: &[f32], targets: &CellSet, u: &mut [f32]) {
+    fn apply_until(
+        &mut self,
+        sources: &CellSet,
+        t: &[f32],
+        targets: &CellSet,
+        u: &mut [f32],
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         let Self { kernel, shift, branch } = self;
-        kernel.apply(sources, t, targets, u);
+        kernel.apply_until(sources, t, targets, u, stop)?;
         let n = sources.len();
         if *shift > 0.0 {
             for (t, u) in t.chunks_exact(n).zip(u.chunks_exact_mut(n)) {
@@ -155,6 +162,7 @@ impl InfluenceOperator<f32> for LinearisedFriction<'_> {
                 }
             });
         }
+        Ok(())
     }
 }
 
@@ -234,7 +242,15 @@ pub fn inverse_of([xx, yy, xy]: [f64; 3], share: f64) -> [f64; 3] {
 impl BranchPreconditioner<'_> {
     /// Keeps the sums from now on. `weights` are those of the first branch of the increment, which are found where
     /// there are none; stick cells keep them.
-    pub fn fix_sums(&mut self, set: &CellSet, weights: &mut Option<[Vec<f32>; 2]>) {
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop.
+    pub fn fix_sums(
+        &mut self,
+        set: &CellSet,
+        weights: &mut Option<[Vec<f32>; 2]>,
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         let n = set.len();
         let ones = [0, 1].map(|component| {
             let mut ones = vec![0.0; 2 * n];
@@ -244,10 +260,11 @@ impl BranchPreconditioner<'_> {
         });
         let known = weights.is_some();
         let mut made = |split: &mut Self| {
-            let mut fixed = FixedSums {
-                weights: weights.get_or_insert_with(|| split.weights(set, &ones)).clone(),
-                ..FixedSums::default()
+            let first = match &*weights {
+                Some(weights) => weights.clone(),
+                None => weights.insert(split.weights(set, &ones, stop)?).clone(),
             };
+            let mut fixed = FixedSums { weights: first, ..FixedSums::default() };
             for (weights, ones) in fixed.weights.iter_mut().zip(&ones) {
                 for (k, (weight, one)) in weights.iter_mut().zip(ones).enumerate() {
                     if split.branch.slips(k % n) {
@@ -267,32 +284,44 @@ impl BranchPreconditioner<'_> {
             if !movable {
                 *weights = None;
             }
-            (fixed, movable)
+            Ok((fixed, movable))
         };
-        let (mut fixed, movable) = made(self);
+        let (mut fixed, movable) = made(self)?;
         if known && !movable {
             // Those of another branch move no sum of this one.
-            fixed = made(self).0;
+            fixed = made(self)?.0;
         }
         self.sums = Some(fixed);
+        Ok(())
     }
 
     /// `M B'` of the branch.
-    fn weights(&mut self, set: &CellSet, ones: &[Vec<f32>; 2]) -> [Vec<f32>; 2] {
-        ones.each_ref().map(|ones| {
-            let mut weights = vec![0.0; ones.len()];
-            self.precondition(set, &mut ones.clone(), &mut weights);
-            weights
-        })
+    fn weights(
+        &mut self,
+        set: &CellSet,
+        ones: &[Vec<f32>; 2],
+        stop: Stop<'_>,
+    ) -> Result<[Vec<f32>; 2], Interrupted> {
+        let mut weights = ones.each_ref().map(|ones| vec![0.0; ones.len()]);
+        for (ones, weights) in ones.iter().zip(&mut weights) {
+            self.precondition(set, &mut ones.clone(), weights, stop)?;
+        }
+        Ok(weights)
     }
 
     /// `z = M r` of a restricted residual.
-    fn precondition(&mut self, set: &CellSet, r: &mut [f32], z: &mut [f32]) {
+    fn precondition(
+        &mut self,
+        set: &CellSet,
+        r: &mut [f32],
+        z: &mut [f32],
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         let Self { torus, branch, own, on_stick: StickVectors { r: on_stick, z: stuck }, .. } = self;
         let (n, stick, own) = (set.len(), &branch.stick, *own);
         if stick.len() == n {
-            torus.precondition(stick, 0.0, r, z);
-            return;
+            torus.precondition(stick, 0.0, r, z, stop)?;
+            return Ok(());
         }
         for (r, z) in r.chunks_exact(n).zip(z.chunks_exact_mut(n)) {
             let chunks = z.chunks_mut(CHUNK).zip(r.chunks(CHUNK)).zip(branch.turning.chunks(CHUNK));
@@ -303,24 +332,32 @@ impl BranchPreconditioner<'_> {
             });
         }
         if stick.is_empty() {
-            return;
+            return Ok(());
         }
         on_stick.clear();
         for r in r.chunks_exact(n) {
             on_stick.extend(branch.sticking.iter().map(|&i| r[i as usize]));
         }
         stuck.resize(on_stick.len(), 0.0);
-        torus.precondition(stick, 0.0, on_stick, stuck);
+        torus.precondition(stick, 0.0, on_stick, stuck, stop)?;
         for (stuck, z) in stuck.chunks_exact(stick.len()).zip(z.chunks_exact_mut(n)) {
             for (&i, stuck) in branch.sticking.iter().zip(stuck) {
                 z[i as usize] = *stuck;
             }
         }
+        Ok(())
     }
 }
 
 impl Preconditioner<f32> for BranchPreconditioner<'_> {
-    fn apply(&mut self, set: &CellSet, _: f32, r: &mut [f32], z: &mut [f32]) -> Preconditioned {
+    fn apply(
+        &mut self,
+        set: &CellSet,
+        _: f32,
+        r: &mut [f32],
+        z: &mut [f32],
+        stop: Stop<'_>,
+    ) -> Result<Preconditioned, Interrupted> {
         let recorder = self.recorder.clone();
         recorder.timed(Part::Preconditioner, || {
             if let Some(sums) = self.sums.take() {
@@ -328,14 +365,15 @@ impl Preconditioner<f32> for BranchPreconditioner<'_> {
                 let [[a, b], [c, d]] = sums.inverse;
                 let offset = times([[a, c], [b, d]], products).map(|offset| offset as f32);
                 self.branch.subtract(offset, r);
-                self.precondition(set, r, z);
+                let done = self.precondition(set, r, z, stop);
                 let [x, y] = sums_of(z);
                 sums.spread([-x, -y], z);
                 self.sums = Some(sums);
+                done?;
             } else {
-                self.precondition(set, r, z);
+                self.precondition(set, r, z, stop)?;
             }
-            Preconditioned { largest: f64::from(largest(r)), product: dot(r, z), sum: 0.0 }
+            Ok(Preconditioned { largest: f64::from(largest(r)), product: dot(r, z), sum: 0.0 })
         })
     }
 
@@ -376,17 +414,23 @@ impl FrictionRoom {
 
     /// The system of a branch on the cells that were taken; `None` without any. `every_lag` as in
     /// [`Plans::system`](crate::operator::Plans::system).
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop while operators are planned.
     pub fn system<'a>(
         &'a mut self,
         operators: &'a mut TangentialOperators,
         branch: &'a SlipBranch,
         every_lag: bool,
-    ) -> Option<BranchSystem<'a>> {
+        stop: Stop<'_>,
+    ) -> Result<Option<BranchSystem<'a>>, Interrupted> {
         let recorder = operators.recorder().clone();
         let (own, shift) = (operators.table().own(), operators.table().shift());
         let (decay, extended) = (operators.tuning().decay, operators.tuning().extended);
         let Self { vectors, extensions, on_stick, weights } = self;
-        let (kernel, transform) = operators.system(&vectors.set, every_lag)?;
+        let Some((kernel, transform)) = operators.system(&vectors.set, every_lag, stop)? else {
+            return Ok(None);
+        };
         let decay = if branch.stick.len() >= extended { decay } else { 0.0 };
         recorder.timed(Part::Sets, || extend(extensions, transform.window(), decay, &branch.stick));
         let torus = TorusInverse { transform, extensions, recorder: recorder.clone() };
@@ -399,42 +443,54 @@ impl FrictionRoom {
             recorder,
         };
         let conditions = LinearisedFriction { kernel, shift: shift as f32, branch };
-        Some(BranchSystem { conditions, preconditioner, weights, vectors })
+        Ok(Some(BranchSystem { conditions, preconditioner, weights, vectors }))
     }
 
     /// `M r` for the inverse M on a torus of all cells that were taken, restricted to a branch: `r' M r` times
     /// [`TORUS_ENERGY`] is an upper estimate of the energy of r, whichever cells slip. `None` without cells.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop.
     pub fn stuck_inverse(
         &mut self,
         operators: &mut TangentialOperators,
         branch: &SlipBranch,
         residuals: &mut [Vec<f32>; 2],
-    ) -> Option<[Vec<f32>; 2]> {
+        stop: Stop<'_>,
+    ) -> Result<Option<[Vec<f32>; 2]>, Interrupted> {
         let recorder = operators.recorder().clone();
         let (decay, extended) = (operators.tuning().decay, operators.tuning().extended);
         let Self { vectors, extensions, .. } = self;
-        let (_, transform) = operators.system(&vectors.set, true)?;
-        Some(recorder.timed(Part::Preconditioner, || {
+        let Some((_, transform)) = operators.system(&vectors.set, true, stop)? else { return Ok(None) };
+        recorder.timed(Part::Preconditioner, || {
             let decay = if vectors.set.len() >= extended { decay } else { 0.0 };
             extend(extensions, transform.window(), decay, &vectors.set);
             let mut inverse = TorusInverse { transform, extensions, recorder: recorder.clone() };
-            residuals.each_mut().map(|r| {
-                let mut z = vec![0.0; r.len()];
-                inverse.precondition(&vectors.set, 0.0, r, &mut z);
-                branch.restrict(&mut z);
-                z
-            })
-        }))
+            let mut found = residuals.each_ref().map(|r| vec![0.0; r.len()]);
+            for (r, z) in residuals.iter_mut().zip(&mut found) {
+                inverse.precondition(&vectors.set, 0.0, r, z, stop)?;
+                branch.restrict(z);
+            }
+            Ok(Some(found))
+        })
     }
 }
 
 impl BranchSystem<'_> {
     /// Solves for a right-hand side and writes the solution over it.
-    pub fn solve(&mut self, right: &mut [f64], criteria: StoppingCriteria, stop: Stop<'_>) -> PcgOutcome {
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop.
+    pub fn solve(
+        &mut self,
+        right: &mut [f64],
+        criteria: StoppingCriteria,
+        stop: Stop<'_>,
+    ) -> Result<PcgOutcome, Interrupted> {
         let size = largest(right);
         if size <= 0.0 || !size.is_finite() {
             right.fill(0.0);
-            return PcgOutcome::default();
+            return Ok(PcgOutcome::default());
         }
         // In units of its own size, as the energy in the criteria.
         let energy = criteria.energy.map(|energy| Energy { base: energy.base / (size * size), ..energy });

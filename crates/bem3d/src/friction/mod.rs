@@ -45,5 +45,5 @@ pub use coupled::{CoupledGuess, CoupledLoad, CoupledState, CoupledSurface, advan
 pub use increment::{FrictionLimits, TangentialControl, exact};
 pub use linearised::{FrictionRoom, SlipBranch, inverse_of};
 pub use state::{
-    ForceTooLarge, FrictionLoad, FrictionSolver, FrictionState, PressedCells, SlipMemory, SlipStep,
+    FrictionLoad, FrictionSolver, FrictionState, NotAdvanced, PressedCells, SlipMemory, SlipStep,
 };

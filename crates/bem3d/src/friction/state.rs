@@ -11,7 +11,7 @@ use crate::operator::{CouplingOperator, TangentialOperators};
 use crate::parts::Recorder;
 use crate::real::{dot, sum};
 use crate::tuning::Tuning;
-use contact_model::{Boundary, FrictionLaw, Status, Stop};
+use contact_model::{Boundary, FrictionLaw, Interrupted, Status, Stop};
 use serde::{Deserialize, Serialize};
 
 /// The contact at the end of an increment, nondimensional: pressures so that `u = sum I p`.
@@ -69,11 +69,22 @@ pub struct FrictionState {
     pub status: Status,
 }
 
-/// Error: the tangential force is larger than friction can hold.
+/// Why there is no state at the end of an increment.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ForceTooLarge {
-    /// The largest one.
-    pub largest: f64,
+pub enum NotAdvanced {
+    /// The tangential force is larger than friction can hold.
+    Force {
+        /// The largest one.
+        largest: f64,
+    },
+    /// By a stop, before there were any tractions.
+    Interrupted,
+}
+
+impl From<Interrupted> for NotAdvanced {
+    fn from(_: Interrupted) -> Self {
+        Self::Interrupted
+    }
 }
 
 /// The tangential load of an increment, and the law of friction.
@@ -152,8 +163,16 @@ impl FrictionSolver {
 
     /// Normal displacement of the whole grid under the tractions of a state; `None` where the problems are
     /// not coupled.
-    pub fn normal_displacement(&mut self, state: &SlipMemory) -> Option<Vec<f64>> {
-        Some(self.coupling.as_mut()?.normal(&state.cells, &state.traction))
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop.
+    pub fn normal_displacement(
+        &mut self,
+        state: &SlipMemory,
+        stop: Stop<'_>,
+    ) -> Result<Option<Vec<f64>>, Interrupted> {
+        let coupling = self.coupling.as_mut();
+        coupling.map(|coupling| coupling.normal(&state.cells, &state.traction, stop)).transpose()
     }
 
     /// Adds the tangential displacement under pressures, times a sign.
@@ -163,11 +182,13 @@ impl FrictionSolver {
         sign: f64,
         cells: &CellSet,
         u: &mut [f64],
-    ) {
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         if let Some(coupling) = &mut self.coupling {
-            let pressed = coupling.tangential(from, pressure, cells);
+            let pressed = coupling.tangential(from, pressure, cells, stop)?;
             u.iter_mut().zip(pressed).for_each(|(u, pressed)| *u += sign * pressed);
         }
+        Ok(())
     }
 
     /// The grid.
@@ -193,25 +214,25 @@ impl FrictionSolver {
     /// resolved, still adds up, because each is measured from the last one that moved.
     ///
     /// # Errors
-    /// [`ForceTooLarge`] for a force of more than the sum of the largest tractions of the cells, beyond a
+    /// [`NotAdvanced::Force`] for a force of more than the sum of the largest tractions of the cells, beyond a
     /// billionth of it.
     pub fn advance(
         &mut self,
         step: SlipStep<'_>,
         limits: FrictionLimits,
         stop: Stop<'_>,
-    ) -> Result<FrictionState, ForceTooLarge> {
+    ) -> Result<FrictionState, NotAdvanced> {
         let SlipStep { before, contact: PressedCells { cells, pressure }, load, guess } = step;
         let limit = load.limits(pressure);
         if let TangentialControl::Force([x, y]) = load.control {
             let largest = sum(&limit);
             if x.hypot(y) > largest * (1.0 + FORCE_ROUNDING) {
-                return Err(ForceTooLarge { largest });
+                return Err(NotAdvanced::Force { largest });
             }
         }
-        let offset = self.offset(before, cells);
+        let offset = self.offset(before, cells, stop)?;
         let mut reference = offset.clone();
-        self.add_pressed((cells, pressure), 1.0, cells, &mut reference);
+        self.add_pressed((cells, pressure), 1.0, cells, &mut reference, stop)?;
         let (from, tractions) = guess.unwrap_or((&before.cells, &before.traction));
         let start = carried(cells, from, tractions);
         let increment = Increment {
@@ -221,7 +242,7 @@ impl FrictionSolver {
             control: load.control,
             displacement: before.displacement,
         };
-        let found = increment::solve(self.systems(), increment, start, limits, stop);
+        let found = increment::solve(self.systems(), increment, start, limits, stop)?;
         if self.is_unmoved(step, &limit, &found, limits) {
             return Ok(self.unmoved(before, load, &found));
         }
@@ -270,21 +291,26 @@ impl FrictionSolver {
     }
 
     /// `delta - u` of the state before on the cells of the next contact.
-    fn offset(&mut self, before: &SlipMemory, cells: &CellSet) -> Vec<f64> {
+    fn offset(
+        &mut self,
+        before: &SlipMemory,
+        cells: &CellSet,
+        stop: Stop<'_>,
+    ) -> Result<Vec<f64>, Interrupted> {
         if *cells == before.cells {
-            return before.offset.clone();
+            return Ok(before.offset.clone());
         }
         let mut u = Vec::new();
-        exact(&mut self.operators, &before.cells, &before.traction, cells, &mut u);
+        exact(&mut self.operators, (&before.cells, &before.traction), cells, &mut u, stop)?;
         for (u, delta) in u.chunks_exact_mut(cells.len().max(1)).zip(before.displacement) {
             for u in u.iter_mut() {
                 *u = delta - *u;
             }
         }
         if !before.cells.is_empty() {
-            self.add_pressed((&before.cells, &before.pressure), -1.0, cells, &mut u);
+            self.add_pressed((&before.cells, &before.pressure), -1.0, cells, &mut u, stop)?;
         }
-        u
+        Ok(u)
     }
 }
 

@@ -1,7 +1,9 @@
 //! Sets of cells of a grid, so that the work is proportional to the contact, not to the grid.
 
 use super::grid::{Grid, Window};
+use crate::tasks::each;
 use crate::tuning::{BAND, LANES, LONG_RUN, PASSED_SINGLY};
+use contact_model::{Interrupted, Stop, never};
 use numerics::parallel::{map, threads_for};
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -488,12 +490,26 @@ impl CellSet {
         values: &mut [T],
         change: impl Fn(SetRow<'_>, &mut [T]) + Sync,
     ) {
+        let _ = self.update_until(work, values, &never, change);
+    }
+
+    /// The same until a stop, which is asked between bands of rows.
+    ///
+    /// # Errors
+    /// [`Interrupted`] where rows are left.
+    pub fn update_until<T: Send>(
+        &self,
+        work: usize,
+        values: &mut [T],
+        stop: Stop<'_>,
+        change: impl Fn(SetRow<'_>, &mut [T]) + Sync,
+    ) -> Result<(), Interrupted> {
         let parts = self.split(values, self.bands().map(|ys| ys.start));
-        map(work, self.bands().zip(parts), |(ys, (start, values))| {
+        each(work, self.bands().zip(parts), stop, |(ys, (start, values))| {
             for row in self.rows_within(ys) {
                 change(row.after(start), values);
             }
-        });
+        })
     }
 
     /// Changes the values `own` of each row by those on `other`, given as a line that begins at a column and is

@@ -2,8 +2,10 @@
 
 use crate::geometry::Lengths;
 use crate::real::Real;
+use crate::tasks::for_each;
 use crate::tuning::CACHE_LINE;
-use numerics::parallel::{for_each, threads_for};
+use contact_model::{Interrupted, Stop, never};
+use numerics::parallel::threads_for;
 use numerics::plan::Precision as _;
 use realfft::RealToComplex;
 use rustfft::num_complex::Complex;
@@ -36,20 +38,51 @@ impl Symbol {
     ///
     /// Cost: one evaluation of the kernel for each lag and two passes of real FFTs.
     pub fn of_kernel(lengths: Lengths, kernel: impl Fn(usize, usize) -> f64 + Sync) -> Self {
-        Self::with_parity(lengths, [Parity::Even; 2], |y, row| {
+        Self::to_its_end(lengths, Self::of_kernel_until(lengths, kernel, &never))
+    }
+
+    /// The same until a stop.
+    ///
+    /// # Errors
+    /// As [`Self::with_parity_until`].
+    pub fn of_kernel_until(
+        lengths: Lengths,
+        kernel: impl Fn(usize, usize) -> f64 + Sync,
+        stop: Stop<'_>,
+    ) -> Result<Self, Interrupted> {
+        let fill = |y: usize, row: &mut [f64]| {
             for (x, value) in row.iter_mut().enumerate() {
                 *value = kernel(x, y);
             }
-        })
+        };
+        Self::with_parity_until(lengths, [Parity::Even; 2], fill, stop)
+    }
+
+    /// A symbol that no stop left unfinished.
+    fn to_its_end(lengths: Lengths, made: Result<Self, Interrupted>) -> Self {
+        made.unwrap_or(Self { lengths, values: Vec::new() })
     }
 
     /// The same of a kernel with these parities along x and y, which `fill` writes row by row: at the lags
     /// `(0 ..= lx / 2, y)`.
     pub fn with_parity(
         lengths: Lengths,
-        [along_x, along_y]: [Parity; 2],
+        parities: [Parity; 2],
         fill: impl Fn(usize, &mut [f64]) + Sync,
     ) -> Self {
+        Self::to_its_end(lengths, Self::with_parity_until(lengths, parities, fill, &never))
+    }
+
+    /// The same until a stop.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop, which is asked between rows and between some columns.
+    pub fn with_parity_until(
+        lengths: Lengths,
+        [along_x, along_y]: [Parity; 2],
+        fill: impl Fn(usize, &mut [f64]) + Sync,
+        stop: Stop<'_>,
+    ) -> Result<Self, Interrupted> {
         let (half_x, half_y) = (lengths.x / 2 + 1, lengths.y / 2 + 1);
         // Transform along x, then along y: some columns at a time are gathered from the rows.
         let mut rows = vec![0.0; half_x * half_y];
@@ -62,21 +95,22 @@ impl Symbol {
         for_each(
             &mut buffers(lengths.x, along_x),
             rows.chunks_exact_mut(half_x).enumerate(),
+            stop,
             |transform, (y, row)| {
                 fill(y, row);
                 transform.apply(row);
             },
-        );
+        )?;
         let blocks = values.chunks_mut(GATHERED * half_y).enumerate();
-        for_each(&mut buffers(lengths.y, along_y), blocks, |transform, (block, columns)| {
+        for_each(&mut buffers(lengths.y, along_y), blocks, stop, |transform, (block, columns)| {
             for (y, row) in rows.chunks_exact(half_x).enumerate() {
                 for (column, &value) in columns.chunks_exact_mut(half_y).zip(&row[block * GATHERED..]) {
                     column[y] = value;
                 }
             }
             columns.chunks_exact_mut(half_y).for_each(|column| transform.apply(column));
-        });
-        Self { lengths, values }
+        })?;
+        Ok(Self { lengths, values })
     }
 
     /// The values over the number of points (neither transform is normalised), in the precision of a

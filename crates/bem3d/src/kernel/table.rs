@@ -11,7 +11,7 @@ use super::tensor::Invertible;
 use crate::geometry::{Grid, Lengths, Window};
 use crate::real::Real;
 use crate::tuning::KEPT_SYMBOLS;
-use contact_model::Boundary;
+use contact_model::{Boundary, Interrupted, Stop};
 use std::any::Any;
 use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
@@ -197,35 +197,57 @@ impl<const E: usize> KernelTable<E> {
     }
 
     /// Scaled symbol of the operator in double precision, `[kx * (ly / 2 + 1) + ky]`.
-    pub fn symbol_f64(&self, lengths: Lengths) -> Arc<Vec<[f64; E]>> {
-        cached(&self.double, lengths, || scaled(lengths, self.symbol(lengths)))
+    ///
+    /// # Errors
+    /// As [`Symbol::with_parity_until`].
+    pub fn symbol_f64(&self, lengths: Lengths, stop: Stop<'_>) -> Result<Arc<Vec<[f64; E]>>, Interrupted> {
+        cached(&self.double, lengths, || Ok(scaled(lengths, self.symbol(lengths, stop)?)))
     }
 
     /// Scaled symbol of the operator in single precision, rounded from the one in double precision, which
     /// certificates need.
-    pub fn symbol_f32(&self, lengths: Lengths) -> Arc<Vec<[f32; E]>> {
-        let double = self.symbol_f64(lengths);
+    ///
+    /// # Errors
+    /// As [`Symbol::with_parity_until`].
+    pub fn symbol_f32(&self, lengths: Lengths, stop: Stop<'_>) -> Result<Arc<Vec<[f32; E]>>, Interrupted> {
+        let double = self.symbol_f64(lengths, stop)?;
         cached(&self.single, lengths, || {
-            Arc::new(double.iter().map(|entries| entries.map(|value| value as f32)).collect())
+            Ok(Arc::new(double.iter().map(|entries| entries.map(|value| value as f32)).collect()))
         })
     }
 
     /// The same for lengths that no operator in double precision takes.
-    pub fn shortened_symbol(&self, lengths: Lengths) -> Arc<Vec<[f32; E]>> {
-        cached(&self.single, lengths, || scaled(lengths, self.symbol(lengths)))
+    ///
+    /// # Errors
+    /// As [`Symbol::with_parity_until`].
+    pub fn shortened_symbol(
+        &self,
+        lengths: Lengths,
+        stop: Stop<'_>,
+    ) -> Result<Arc<Vec<[f32; E]>>, Interrupted> {
+        cached(&self.single, lengths, || Ok(scaled(lengths, self.symbol(lengths, stop)?)))
     }
 
     /// Symbol of the kernel on a circular grid, with each lag taken the shorter way round.
-    pub(super) fn symbol(&self, lengths: Lengths) -> impl Iterator<Item = [f64; E]> + use<E> {
+    ///
+    /// # Errors
+    /// As [`Symbol::with_parity_until`].
+    pub(super) fn symbol(
+        &self,
+        lengths: Lengths,
+        stop: Stop<'_>,
+    ) -> Result<impl Iterator<Item = [f64; E]> + use<E>, Interrupted> {
         let coefficients = self.coefficients();
         let parities = self.kernel.parities();
-        let entries: [Vec<f64>; E] = std::array::from_fn(|entry| {
-            Symbol::with_parity(lengths, parities[entry], |y, row| coefficients.fill(entry, y, row)).values
-        });
+        let mut entries = [const { Vec::new() }; E];
+        for (entry, values) in entries.iter_mut().enumerate() {
+            let fill = |y: usize, row: &mut [f64]| coefficients.fill(entry, y, row);
+            *values = Symbol::with_parity_until(lengths, parities[entry], fill, stop)?.values;
+        }
         // An entry that is odd in both directions has the square of -i.
         let signs = parities.map(|parity| if parity == [Parity::Odd; 2] { -1.0 } else { 1.0 });
         let points = entries[0].len();
-        (0..points).map(move |k| std::array::from_fn(|entry| signs[entry] * entries[entry][k]))
+        Ok((0..points).map(move |k| std::array::from_fn(|entry| signs[entry] * entries[entry][k])))
     }
 }
 
@@ -236,10 +258,17 @@ where
     /// Scaled inverse symbol of the kernel wrapped on a torus.
     ///
     /// The wrapped kernel is positive definite; a rounding error in a tiny window must not turn a sign.
-    pub fn inverse_symbol(&self, lengths: Lengths) -> Arc<Vec<[f32; E]>> {
+    ///
+    /// # Errors
+    /// As [`Symbol::with_parity_until`].
+    pub fn inverse_symbol(
+        &self,
+        lengths: Lengths,
+        stop: Stop<'_>,
+    ) -> Result<Arc<Vec<[f32; E]>>, Interrupted> {
         let floor = self.smallest_eigenvalue() / 2.0;
         cached(&self.inverse, lengths, || {
-            scaled(lengths, self.symbol(lengths).map(|entries| entries.inverse(floor)))
+            Ok(scaled(lengths, self.symbol(lengths, stop)?.map(|entries| entries.inverse(floor))))
         })
     }
 }
@@ -287,12 +316,16 @@ impl<T> Kept<T> {
 /// No lock is held while it is made: threads share that work, and a thread that waits may begin another
 /// solve, which would then wait for the lock for ever. Two threads may make the same symbol; one of them is
 /// kept.
-fn cached<T>(kept: &Mutex<Kept<T>>, lengths: Lengths, make: impl FnOnce() -> Arc<Vec<T>>) -> Arc<Vec<T>> {
-    let found = lock(kept).find(lengths);
-    found.unwrap_or_else(|| {
-        let symbol = make();
-        lock(kept).keep(lengths, symbol)
-    })
+fn cached<T>(
+    kept: &Mutex<Kept<T>>,
+    lengths: Lengths,
+    make: impl FnOnce() -> Result<Arc<Vec<T>>, Interrupted>,
+) -> Result<Arc<Vec<T>>, Interrupted> {
+    if let Some(symbol) = { lock(kept).find(lengths) } {
+        return Ok(symbol);
+    }
+    let symbol = make()?;
+    Ok(lock(kept).keep(lengths, symbol))
 }
 
 /// Locks the cache. A panic of another thread while it filled the cache leaves no incomplete entry.
@@ -308,6 +341,7 @@ mod tests {
     use crate::kernel::love::influence_of_rectangle;
     use crate::operator::{DirectSum, FftConvolution, InfluenceOperator};
     use approx::assert_relative_eq;
+    use contact_model::never;
     use std::cell::Cell;
 
     /// Rounding of transforms of a few hundred points.
@@ -350,7 +384,7 @@ mod tests {
             assert_eq!(lengths, Lengths { x: columns, y: rows }, "the period itself");
             let (mut pairs, mut transform) = (vec![0.0; p.len()], vec![0.0; p.len()]);
             DirectSum(&table).apply(&cells, &p, &cells, &mut pairs);
-            FftConvolution::new(grid.window(), lengths, table.symbol_f64(lengths)).apply(
+            FftConvolution::new(grid.window(), lengths, table.symbol_f64(lengths, &never).unwrap()).apply(
                 &cells,
                 &p,
                 &cells,
@@ -390,8 +424,12 @@ mod tests {
             let smallest = table.smallest_eigenvalue();
             assert!((eigenvalue / smallest - 1.0).abs() < 0.01, "{grid:?}: {eigenvalue} {smallest}");
             let mut back = vec![0.0; board.len()];
-            FftConvolution::<f32>::new(grid.window(), lengths, table.inverse_symbol(lengths))
-                .apply(&cells, &board, &cells, &mut back);
+            FftConvolution::<f32>::new(
+                grid.window(),
+                lengths,
+                table.inverse_symbol(lengths, &never).unwrap(),
+            )
+            .apply(&cells, &board, &cells, &mut back);
             for (b, p) in back.iter().zip(&board) {
                 assert_relative_eq!(*b, p / eigenvalue, max_relative = SINGLE);
             }
@@ -450,13 +488,27 @@ mod tests {
         let kept = Mutex::new(Kept::<u8>::default());
         let (a, b) = (Lengths { x: 2, y: 2 }, Lengths { x: 4, y: 2 });
         let symbol = cached(&kept, a, || {
-            cached(&kept, b, || Arc::new(vec![2]));
-            cached(&kept, a, || Arc::new(vec![1]));
-            Arc::new(vec![1])
+            cached(&kept, b, || Ok(Arc::new(vec![2]))).unwrap();
+            cached(&kept, a, || Ok(Arc::new(vec![1]))).unwrap();
+            Ok(Arc::new(vec![1]))
         });
+        let symbol = symbol.unwrap();
         assert_eq!((*symbol).clone(), [1]);
-        assert!(Arc::ptr_eq(&symbol, &cached(&kept, a, || unreachable!())));
+        assert!(Arc::ptr_eq(&symbol, &cached(&kept, a, || unreachable!()).unwrap()));
         assert_eq!(lock(&kept).made.len(), 2);
+    }
+
+    #[test]
+    fn a_symbol_that_is_left_unfinished_is_not_kept() {
+        let table = NormalTable::shared(Grid::square(51, 43), Boundary::Free);
+        let lengths = table.exact_lengths(table.grid().window());
+        for before in [0, 1, 30] {
+            let polls = Cell::new(0);
+            let stop = || polls.replace(polls.get() + 1) == before;
+            assert_eq!(table.symbol_f64(lengths, &stop).map(|_| ()), Err(Interrupted));
+            assert!(lock(&table.double).made.is_empty());
+        }
+        assert!(table.symbol_f64(lengths, &never).is_ok());
     }
 
     #[test]
@@ -466,8 +518,9 @@ mod tests {
         let get = |x: usize, count: usize| {
             cached(&kept, Lengths { x, y: 2 }, || {
                 made.set(made.get() + 1);
-                Arc::new(vec![0; count])
-            });
+                Ok(Arc::new(vec![0; count]))
+            })
+            .unwrap();
             made.get()
         };
         assert_eq!((get(2, KEPT_SYMBOLS / 2), get(4, KEPT_SYMBOLS / 2)), (1, 2));

@@ -163,7 +163,7 @@ mod tests {
         let c = nu / (1.0 - nu);
         let table = TangentialTable::shared(Grid::square(n, n), Boundary::Periodic, c);
         let lengths = Lengths { x: n, y: n };
-        let symbol: Vec<[f64; 3]> = table.symbol(lengths).collect();
+        let symbol: Vec<[f64; 3]> = table.symbol(lengths, &contact_model::never).unwrap().collect();
         for (kx, ky) in [(1_u32, 0_u32), (0, 2), (2, 1), (3, 3)] {
             let (qx, qy) = (f64::from(kx), f64::from(ky));
             let (q2, wave) = (qx * qx + qy * qy, std::f64::consts::TAU / n as f64);
@@ -187,7 +187,8 @@ mod tests {
             for c in [0.0, 0.43, 1.0] {
                 let table = TangentialTable::shared(Grid { columns, rows, stretch }, Boundary::Periodic, c);
                 let lowest = table
-                    .symbol(Lengths { x: columns, y: rows })
+                    .symbol(Lengths { x: columns, y: rows }, &contact_model::never)
+                    .unwrap()
                     .map(|[xx, yy, xy]| f64::midpoint(xx, yy) - (0.5 * (xx - yy)).hypot(xy))
                     .fold(f64::INFINITY, f64::min);
                 assert!(lowest >= table.smallest_eigenvalue(), "{stretch} {c}: {lowest}");

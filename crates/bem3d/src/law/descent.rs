@@ -3,7 +3,7 @@
 
 use super::definition::ConvexLaw;
 use crate::real::{dot, sum_of_pairs, update};
-use contact_model::Stop;
+use contact_model::{Interrupted, Stop};
 
 /// The conditions of a descent, and where it is.
 #[derive(Debug)]
@@ -36,13 +36,16 @@ pub struct Descent<'a, L, const N: usize> {
 /// distance from the minimum; runs that begin with such a step therefore converge to the unique solution from
 /// any tractions (D. P. Bertsekas, Nonlinear Programming, section 2.3).
 ///
+/// # Errors
+/// [`Interrupted`] by the stop or by `displace`; tractions and gradient are then those after some step.
+///
 /// Cost: one application of K in double precision a step.
 pub fn descend<L: ConvexLaw<N>, const N: usize>(
     mut descent: Descent<'_, L, N>,
-    mut displace: impl FnMut(&[f64], &mut Vec<f64>),
+    mut displace: impl FnMut(&[f64], &mut Vec<f64>) -> Result<(), Interrupted>,
     steps: usize,
     stop: Stop<'_>,
-) -> usize {
+) -> Result<usize, Interrupted> {
     let (mut target, mut displaced) = (Vec::new(), Vec::new());
     let size = descent.tractions.len();
     let (mut change, mut residual) = (vec![0.0; size], vec![0.0; size]);
@@ -51,7 +54,7 @@ pub fn descend<L: ConvexLaw<N>, const N: usize>(
     let mut conjugate: Option<f64> = None;
     for taken in 0..steps {
         if stop.stops() {
-            return taken;
+            return Err(Interrupted);
         }
         let Projected { inside, outside, mean } = descent.project_gradient(&mut residual);
         let on_face = taken > 0 && inside > outside;
@@ -73,12 +76,12 @@ pub fn descend<L: ConvexLaw<N>, const N: usize>(
                 conjugate = None;
                 continue;
             }
-            return taken;
+            return Ok(taken);
         }
-        displace(&change, &mut displaced);
+        displace(&change, &mut displaced)?;
         let curvature = dot(&change, &displaced);
         if curvature.is_nan() || curvature <= 0.0 {
-            return taken;
+            return Ok(taken);
         }
         length = dot(&change, &change) / curvature;
         let share = (-slope / curvature).min(limit);
@@ -93,7 +96,7 @@ pub fn descend<L: ConvexLaw<N>, const N: usize>(
         }
         update(descent.gradient, &displaced, |gradient, u| *gradient += share * u);
     }
-    steps
+    Ok(steps)
 }
 
 impl<L: ConvexLaw<N>, const N: usize> Descent<'_, L, N> {

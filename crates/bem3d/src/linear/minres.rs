@@ -2,7 +2,7 @@
 //! Anal. 12, 617 (1975)).
 
 use crate::real::{Real, dot, update};
-use contact_model::Stop;
+use contact_model::{Interrupted, Stop};
 
 /// Where an iteration ends at the latest.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,28 +26,34 @@ pub struct MinresOutcome {
 /// inverse of |A|, until the residual has fallen by a factor. `precondition(r, z)` writes `z = M r` and may
 /// change r where M is singular. Returns x.
 ///
+/// # Errors
+/// [`Interrupted`] by the stop, or by a product that was.
+///
 /// Cost: one product by each in a step, and seven vectors.
 pub fn minres<T: Real>(
-    mut product: impl FnMut(&[T], &mut [T]),
-    mut precondition: impl FnMut(&mut [T], &mut [T]),
+    mut product: impl FnMut(&[T], &mut [T]) -> Result<(), Interrupted>,
+    mut precondition: impl FnMut(&mut [T], &mut [T]) -> Result<(), Interrupted>,
     mut b: Vec<T>,
     limits: MinresLimits,
     stop: Stop<'_>,
-) -> (Vec<T>, MinresOutcome) {
+) -> Result<(Vec<T>, MinresOutcome), Interrupted> {
     let zeros = || vec![T::default(); b.len()];
     let (mut x, mut w, mut before, mut v, mut y, mut z) =
         (zeros(), zeros(), zeros(), zeros(), zeros(), zeros());
     let mut last = zeros();
-    precondition(&mut b, &mut z);
+    precondition(&mut b, &mut z)?;
     let start = dot(&b, &z).max(0.0).sqrt();
     let (mut beta, mut beta_before) = (start, 0.0);
     // The last two rotations of the QR factors of Lanczos's matrix.
     let (mut cosine, mut sine, mut d, mut epsilon, mut left) = (-1.0, 0.0, 0.0, 0.0, start);
     let mut outcome = MinresOutcome { steps: 0, reduction: 1.0 };
-    while start > 0.0 && outcome.steps < limits.steps && beta > 0.0 && beta.is_finite() && !stop.stops() {
+    while start > 0.0 && outcome.steps < limits.steps && beta > 0.0 && beta.is_finite() {
+        if stop.stops() {
+            return Err(Interrupted);
+        }
         let scale = T::of(beta.recip());
         update(&mut v, &z, |v, &z| *v = scale * z);
-        product(&v, &mut y);
+        product(&v, &mut y)?;
         outcome.steps += 1;
         if outcome.steps > 1 {
             let share = T::of(-beta / beta_before);
@@ -59,7 +65,7 @@ pub fn minres<T: Real>(
         // The two last residuals of Lanczos are y and b.
         std::mem::swap(&mut last, &mut b);
         std::mem::swap(&mut b, &mut y);
-        precondition(&mut b, &mut z);
+        precondition(&mut b, &mut z)?;
         beta_before = beta;
         beta = dot(&b, &z).max(0.0).sqrt();
         let epsilon_before = epsilon;
@@ -85,7 +91,7 @@ pub fn minres<T: Real>(
             break;
         }
     }
-    (x, outcome)
+    Ok((x, outcome))
 }
 
 #[cfg(test)]
@@ -110,15 +116,20 @@ mod tests {
         let b: Vec<f64> = (0..n).map(|i| (1.3 * i as f64).sin()).collect();
         for weight in [0.0, 0.5] {
             let (x, outcome) = minres(
-                |v, y| y.iter_mut().zip(&a).for_each(|(y, row)| *y = dot(row, v)),
+                |v, y| {
+                    y.iter_mut().zip(&a).for_each(|(y, row)| *y = dot(row, v));
+                    Ok(())
+                },
                 |r, z| {
                     let own = |i: usize| 1.0 / (1.0 + weight * i as f64);
                     z.iter_mut().zip(&*r).enumerate().for_each(|(i, (z, r))| *z = own(i) * r);
+                    Ok(())
                 },
                 b.clone(),
                 MinresLimits { reduction: 1e-12, steps: 3 * n },
                 &never,
-            );
+            )
+            .unwrap();
             assert!(outcome.steps <= n + 2 && outcome.reduction <= 1e-12, "{outcome:?}");
             for (row, b) in a.iter().zip(&b) {
                 approx::assert_relative_eq!(dot(row, &x), *b, epsilon = 1e-10);
@@ -128,15 +139,26 @@ mod tests {
 
     #[test]
     fn a_right_hand_side_of_zero_and_a_limit_of_steps() {
-        let identity = |v: &[f64], y: &mut [f64]| y.copy_from_slice(v);
-        let none = |r: &mut [f64], z: &mut [f64]| z.copy_from_slice(r);
+        let identity = |v: &[f64], y: &mut [f64]| {
+            y.copy_from_slice(v);
+            Ok(())
+        };
+        let none = |r: &mut [f64], z: &mut [f64]| {
+            z.copy_from_slice(r);
+            Ok(())
+        };
         let limits = MinresLimits { reduction: 1e-3, steps: 9 };
-        let (x, outcome) = minres(identity, none, vec![0.0; 3], limits, &never);
+        let (x, outcome) = minres(identity, none, vec![0.0; 3], limits, &never).unwrap();
         assert!(x == [0.0; 3] && outcome.steps == 0);
         let a = matrix(6);
-        let product = |v: &[f64], y: &mut [f64]| y.iter_mut().zip(&a).for_each(|(y, row)| *y = dot(row, v));
+        let product = |v: &[f64], y: &mut [f64]| {
+            y.iter_mut().zip(&a).for_each(|(y, row)| *y = dot(row, v));
+            Ok(())
+        };
         let limits = MinresLimits { reduction: 0.0, steps: 2 };
-        let (_, outcome) = minres(product, none, vec![1.0; 6], limits, &never);
+        let (_, outcome) = minres(product, none, vec![1.0; 6], limits, &never).unwrap();
         assert_eq!(outcome.steps, 2);
+        let stopped = minres(product, none, vec![1.0; 6], limits, &|| true);
+        assert_eq!(stopped.map(|_| ()), Err(Interrupted));
     }
 }

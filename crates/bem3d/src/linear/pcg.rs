@@ -8,7 +8,7 @@ use crate::operator::{Conditioning, InfluenceOperator, Operators, Recipe};
 use crate::parts::Part;
 use crate::real::{Real, dot, each, largest, sum, update};
 use crate::tuning::CHUNK;
-use contact_model::Stop;
+use contact_model::{Interrupted, Stop};
 use numerics::parallel::{map, widest};
 
 /// Stopping criteria of an iteration: it ends when one of them is met, or one step earlier where the next
@@ -75,14 +75,23 @@ impl Workspace {
     }
 
     /// Sets the set of cells and the recipe for systems on it.
-    pub fn take(&mut self, operators: &mut Operators, set: CellSet, recipe: Recipe) {
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop while its operators are planned.
+    pub fn take(
+        &mut self,
+        operators: &mut Operators,
+        set: CellSet,
+        recipe: Recipe,
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         if self.recipe.is_some_and(|last| last.has_preconditioner() != recipe.has_preconditioner()) {
             self.begin_load();
         }
         self.recipe = Some(recipe);
         let (decay, recorder) = (operators.tuning().decay, operators.recorder().clone());
         if let (Conditioning::Torus { extended, .. }, (_, Some(torus))) =
-            (recipe.conditioning, operators.system(recipe))
+            (recipe.conditioning, operators.system(recipe, stop)?)
         {
             let decay = if extended { decay } else { 0.0 };
             recorder.timed(Part::Sets, || self.extension.set(&set, torus.window(), decay));
@@ -94,6 +103,7 @@ impl Workspace {
                 self.double.take(set);
             }
         });
+        Ok(())
     }
 
     /// The set.
@@ -103,6 +113,9 @@ impl Workspace {
 
     /// Solves `G x = right` on the set approximately, or the constrained form of it for `fixed`, and writes x
     /// over `right`. Criteria and outcome are in the units of `right`.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop; `right` is then as it was.
     pub fn solve(
         &mut self,
         operators: &mut Operators,
@@ -110,11 +123,13 @@ impl Workspace {
         fixed: Fixed,
         criteria: StoppingCriteria,
         stop: Stop<'_>,
-    ) -> PcgOutcome {
+    ) -> Result<PcgOutcome, Interrupted> {
         operators.plans.solves += 1;
         // In units of its own size: its square neither overflows nor underflows.
         let unit = largest(right);
-        let Some(recipe) = self.recipe.filter(|_| unit > 0.0) else { return PcgOutcome::default() };
+        let Some(recipe) = self.recipe.filter(|_| unit > 0.0) else {
+            return Ok(PcgOutcome::default());
+        };
         let square = unit * unit;
         let criteria = StoppingCriteria {
             floor: criteria.floor / unit,
@@ -123,7 +138,7 @@ impl Workspace {
         };
         let mut identity = Identity { smallest_eigenvalue: operators.table().smallest_eigenvalue() };
         let recorder = operators.recorder().clone();
-        let (mut operator, torus) = operators.system(recipe);
+        let (mut operator, torus) = operators.system(recipe, stop)?;
         let outcome = recorder.timed(Part::Vectors, || {
             let operator = &mut operator;
             if !recipe.is_single() {
@@ -140,9 +155,9 @@ impl Workspace {
                 let preconditioner = &mut identity;
                 LinearSystem { operator, preconditioner, vectors, fixed }.solve(right, unit, criteria, stop)
             }
-        });
+        })?;
         operators.plans.applications += outcome.applications;
-        PcgOutcome { energy: outcome.energy * square, ..outcome }
+        Ok(PcgOutcome { energy: outcome.energy * square, ..outcome })
     }
 }
 
@@ -205,15 +220,19 @@ impl<T: Real> Vectors<T> {
     }
 
     /// The sum of the weights, which are computed where there are none.
-    fn weigh(&mut self, preconditioner: &mut dyn Preconditioner<T>) -> f64 {
+    fn weigh(
+        &mut self,
+        preconditioner: &mut dyn Preconditioner<T>,
+        stop: Stop<'_>,
+    ) -> Result<f64, Interrupted> {
         let total = sum(&self.weights);
         if total > 0.0 {
-            return total;
+            return Ok(total);
         }
         let mut ones = vec![T::of(1.0); self.set.len()];
-        let total = preconditioner.apply(&self.set, T::default(), &mut ones, &mut self.z).sum;
+        let total = preconditioner.apply(&self.set, T::default(), &mut ones, &mut self.z, stop)?.sum;
         self.weights.clone_from(&self.z);
-        total
+        Ok(total)
     }
 }
 
@@ -232,19 +251,22 @@ pub struct LinearSystem<'a, T> {
 impl<T: Real> LinearSystem<'_, T> {
     /// Solves for a right-hand side, and writes the solution over it. Criteria and outcome are in units of its size,
     /// `unit`.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop; `right` is then as it was.
     pub fn solve(
         self,
         right: &mut [f64],
         unit: f64,
         criteria: StoppingCriteria,
         stop: Stop<'_>,
-    ) -> PcgOutcome {
+    ) -> Result<PcgOutcome, Interrupted> {
         let Self { operator, preconditioner, vectors, fixed } = self;
         vectors.load(right, unit);
         let system = LinearSystem { operator, preconditioner, vectors: &mut *vectors, fixed };
-        let outcome = pcg(system, criteria, stop);
+        let outcome = pcg(system, criteria, stop)?;
         vectors.unload(right, unit);
-        outcome
+        Ok(outcome)
     }
 }
 
@@ -254,17 +276,24 @@ impl<T: Real> LinearSystem<'_, T> {
 /// residual is `r - (w'r / w'1) 1` and the preconditioned one `z - (1'z / 1'w) w`, which is symmetric and
 /// keeps the sum whatever the weights; `G^-1 1` is the best of them.
 ///
+/// # Errors
+/// [`Interrupted`] by the stop, which the operators ask.
+///
 /// Cost: one application of G and one of the preconditioner a step. The caller checks the result with the
 /// exact operator.
-fn pcg<T: Real>(system: LinearSystem<'_, T>, criteria: StoppingCriteria, stop: Stop<'_>) -> PcgOutcome {
-    let mut gradients = ConjugateGradients::new(system, criteria);
+fn pcg<'a, T: Real>(
+    system: LinearSystem<'a, T>,
+    criteria: StoppingCriteria,
+    stop: Stop<'a>,
+) -> Result<PcgOutcome, Interrupted> {
+    let mut gradients = ConjugateGradients::new(system, criteria, stop)?;
     loop {
-        let found = gradients.precondition();
-        if gradients.is_reached(found) || stop.stops() {
+        let found = gradients.precondition()?;
+        if gradients.is_reached(found) {
             break;
         }
         gradients.turn(found);
-        if !gradients.find_step() {
+        if !gradients.find_step()? {
             break; // Below what single precision can resolve.
         }
         if gradients.is_expected() {
@@ -272,13 +301,14 @@ fn pcg<T: Real>(system: LinearSystem<'_, T>, criteria: StoppingCriteria, stop: S
             break;
         }
     }
-    gradients.finish()
+    Ok(gradients.finish())
 }
 
 /// Conjugate gradients on their way.
 struct ConjugateGradients<'a, T> {
     system: LinearSystem<'a, T>,
     criteria: StoppingCriteria,
+    stop: Stop<'a>,
     /// Upper bound of the ratio of the energy of a residual to `r' M r`.
     factor: f64,
     /// The sum of the weights, where the sum of corrections is fixed.
@@ -298,14 +328,19 @@ struct ConjugateGradients<'a, T> {
 }
 
 impl<'a, T: Real> ConjugateGradients<'a, T> {
-    fn new(system: LinearSystem<'a, T>, criteria: StoppingCriteria) -> Self {
+    fn new(
+        system: LinearSystem<'a, T>,
+        criteria: StoppingCriteria,
+        stop: Stop<'a>,
+    ) -> Result<Self, Interrupted> {
         let LinearSystem { preconditioner, vectors, fixed, .. } = system;
         vectors.x.fill(T::default());
         let factor = preconditioner.energy_factor();
-        let total = (fixed == Fixed::Force).then(|| vectors.weigh(preconditioner));
-        Self {
+        let total = if fixed == Fixed::Force { Some(vectors.weigh(preconditioner, stop)?) } else { None };
+        Ok(Self {
             system: LinearSystem { preconditioner, vectors, ..system },
             criteria,
+            stop,
             factor,
             total,
             step: T::default(),
@@ -316,7 +351,7 @@ impl<'a, T: Real> ConjugateGradients<'a, T> {
             gain: 0.0,
             steps: 0,
             applications: 0,
-        }
+        })
     }
 
     /// Takes the last step off the residual.
@@ -326,7 +361,7 @@ impl<'a, T: Real> ConjugateGradients<'a, T> {
     }
 
     /// Preconditions the residual after the last step.
-    fn precondition(&mut self) -> Preconditioned {
+    fn precondition(&mut self) -> Result<Preconditioned, Interrupted> {
         if self.steps > 0 {
             self.lower_residual();
         }
@@ -334,11 +369,11 @@ impl<'a, T: Real> ConjugateGradients<'a, T> {
         let Vectors { set, r, z, weights, .. } = &mut **vectors;
         let offset = self.total.map_or(T::default(), |total| T::of(dot(weights, r) / total));
         // Without a product of r and the weights, the part of z along them adds nothing to r'z.
-        let found = preconditioner.apply(set, offset, r, z);
+        let found = preconditioner.apply(set, offset, r, z, self.stop)?;
         if self.steps == 0 {
             self.start = found.product;
         }
-        found
+        Ok(found)
     }
 
     /// Whether a residual with this `r' M r` is as small as wanted.
@@ -378,10 +413,10 @@ impl<'a, T: Real> ConjugateGradients<'a, T> {
     }
 
     /// Finds the length of the step along the direction; `false` where the curvature along it is not positive.
-    fn find_step(&mut self) -> bool {
+    fn find_step(&mut self) -> Result<bool, Interrupted> {
         let LinearSystem { operator, vectors, fixed, .. } = &mut self.system;
         let Vectors { set, t, kt, .. } = &mut **vectors;
-        operator.apply(set, t, set, kt);
+        operator.apply_until(set, t, set, kt, self.stop)?;
         if let Fixed::MeanPlane(constant) = *fixed {
             let offset = T::of(constant * sum(t));
             each(kt, |kt| *kt += T::default() - offset);
@@ -389,13 +424,13 @@ impl<'a, T: Real> ConjugateGradients<'a, T> {
         self.applications += 1;
         let curvature = dot(t, kt);
         if curvature.is_nan() || curvature <= 0.0 {
-            return false;
+            return Ok(false);
         }
         self.step = T::of(self.rz / curvature);
         self.gain += self.rz * self.rz / curvature;
         self.steps += 1;
         self.pending = true;
-        true
+        Ok(true)
     }
 
     /// Whether the residual after the step need not be known: the step is expected to gain as much as the last one,

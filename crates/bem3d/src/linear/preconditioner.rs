@@ -7,6 +7,7 @@ use crate::operator::Convolution;
 use crate::parts::{Part, Recorder};
 use crate::real::{Real, dot, each, largest, sum};
 use crate::tuning::BAND;
+use contact_model::{Interrupted, Stop};
 use numerics::parallel::map;
 
 /// The result of one application of a preconditioner.
@@ -23,7 +24,17 @@ pub struct Preconditioned {
 /// A symmetric positive definite M that approximates the inverse of the influence matrix on a set.
 pub trait Preconditioner<T> {
     /// Lowers the residual `r` by `offset` and writes `z = M r`.
-    fn apply(&mut self, set: &CellSet, offset: T, r: &mut [T], z: &mut [T]) -> Preconditioned;
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop; `z` is then undefined.
+    fn apply(
+        &mut self,
+        set: &CellSet,
+        offset: T,
+        r: &mut [T],
+        z: &mut [T],
+        stop: Stop<'_>,
+    ) -> Result<Preconditioned, Interrupted>;
 
     /// Upper bound of the ratio of the energy `r' G^-1 r` to `r' M r`.
     fn energy_factor(&self) -> f64;
@@ -37,10 +48,17 @@ pub struct Identity {
 }
 
 impl<T: Real> Preconditioner<T> for Identity {
-    fn apply(&mut self, _: &CellSet, offset: T, r: &mut [T], z: &mut [T]) -> Preconditioned {
+    fn apply(
+        &mut self,
+        _: &CellSet,
+        offset: T,
+        r: &mut [T],
+        z: &mut [T],
+        _: Stop<'_>,
+    ) -> Result<Preconditioned, Interrupted> {
         each(r, |r| *r = *r - offset);
         z.copy_from_slice(r);
-        Preconditioned { largest: largest(r).to_f64(), product: dot(r, z), sum: sum(z) }
+        Ok(Preconditioned { largest: largest(r).to_f64(), product: dot(r, z), sum: sum(z) })
     }
 
     fn energy_factor(&self) -> f64 {
@@ -73,19 +91,23 @@ where
     [f32; E]: Tensor<f32, N>,
 {
     /// Lowers the residual `r` by `offset` and writes `z = M r`; n numbers of each component.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop; `z` is then undefined.
     pub fn precondition(
         &mut self,
         set: &CellSet,
         offset: f32,
         r: &mut [f32],
         z: &mut [f32],
-    ) -> Preconditioned {
+        stop: Stop<'_>,
+    ) -> Result<Preconditioned, Interrupted> {
         let largest = self.lower(set, offset, r);
         self.extensions.iter_mut().for_each(Extension::extend);
-        self.transform(set, r, z);
+        self.transform(set, r, z, stop)?;
         self.extensions.iter_mut().for_each(Extension::collect);
         let (product, sum) = self.collect(set, r, z);
-        Preconditioned { largest: f64::from(largest), product, sum }
+        Ok(Preconditioned { largest: f64::from(largest), product, sum })
     }
 
     /// The first rows of the bands of the window.
@@ -127,7 +149,13 @@ where
 
     /// The inverse on the torus of the residual and its extension: z on the set, and outside of it the sums over
     /// blocks that the transpose of the extension takes back.
-    fn transform(&mut self, set: &CellSet, r: &[f32], z: &mut [f32]) {
+    fn transform(
+        &mut self,
+        set: &CellSet,
+        r: &[f32],
+        z: &mut [f32],
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         let (first_rows, n) = (self.first_rows(), set.len());
         let Self { transform, extensions, .. } = self;
         let Window { x: x0, y: y0, .. } = transform.window();
@@ -141,8 +169,9 @@ where
                     row.spread(&r[component * n..][..n], out, x0);
                 }
             },
-        );
-        transform.multiply(|_| true);
+            stop,
+        )?;
+        transform.multiply(|_| true, stop)?;
         let mut outputs = Vec::with_capacity(N * bands);
         for (extension, z) in extensions.iter_mut().zip(z.chunks_exact_mut(n)) {
             extension.clear();
@@ -163,7 +192,8 @@ where
                     sums.add_transposed(y, u);
                 }
             },
-        );
+            stop,
+        )
     }
 
     /// Adds to z what the transpose of the extension gives, and returns `r' z` and the sum of z.
@@ -195,9 +225,16 @@ where
 }
 
 impl Preconditioner<f32> for TorusInverse<'_, 1, 1> {
-    fn apply(&mut self, set: &CellSet, offset: f32, r: &mut [f32], z: &mut [f32]) -> Preconditioned {
+    fn apply(
+        &mut self,
+        set: &CellSet,
+        offset: f32,
+        r: &mut [f32],
+        z: &mut [f32],
+        stop: Stop<'_>,
+    ) -> Result<Preconditioned, Interrupted> {
         let recorder = self.recorder.clone();
-        recorder.timed(Part::Preconditioner, || self.precondition(set, offset, r, z))
+        recorder.timed(Part::Preconditioner, || self.precondition(set, offset, r, z, stop))
     }
 
     fn energy_factor(&self) -> f64 {

@@ -16,7 +16,7 @@ use crate::kernel::love::influence_of_rectangle;
 use crate::response::adhesive::{Response, ResponseRequest, respond};
 use contact_model::units::{number, rounded};
 use contact_model::{
-    Adhesion, AdhesiveState, Branch, Certificate, ContactState, Error, Result, Status, Stop,
+    Adhesion, AdhesiveState, Branch, Certificate, ContactState, Error, Interrupted, Result, Status, Stop,
 };
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -235,10 +235,15 @@ impl AdhesiveContact<'_> {
                 Search { problem: &mut self.surface.problem, attraction, control, limits, plain };
             let start = match before {
                 Some((last, LoadSequence::Path)) => last.again(),
-                Some((last, LoadSequence::Single)) => search.continued(last, stop),
-                None => search.first(stop),
+                Some((last, LoadSequence::Single)) => {
+                    search.continued(last, stop).map_err(Interrupted::without_state)?
+                }
+                None => search.first(stop).map_err(Interrupted::without_state)?,
             };
             let ended = search.from(start, stop).map_err(|ended| *ended);
+            if let Err((Ended::Interrupted, _)) = &ended {
+                return Err(Interrupted.without_state());
+            }
             let search_error = match &ended {
                 Ok(equilibrium) | Err((_, equilibrium)) => search.load_error(equilibrium),
             };
@@ -250,7 +255,7 @@ impl AdhesiveContact<'_> {
                     plain = true;
                     continue;
                 }
-                Err((Ended::PulledOff, _)) => return Err(self.pulled_off(control)?),
+                Err((Ended::PulledOff | Ended::Interrupted, _)) => return Err(self.pulled_off(control)?),
                 Err((Ended::Status(status), equilibrium)) => (equilibrium, status),
             };
             let left = last.is_some_and(|last| self.left_branch(last, &equilibrium, rises));
@@ -258,7 +263,9 @@ impl AdhesiveContact<'_> {
             let sound = status == Status::Converged && !left;
             if sound || !again {
                 let request = ResponseRequest { control, tolerance, stop };
-                response = respond(&mut self.surface.problem, attraction, &equilibrium, request);
+                // A stopped search has no stability: nothing that is unstable was found.
+                response = respond(&mut self.surface.problem, attraction, &equilibrium, request)
+                    .unwrap_or_else(|Interrupted| Response { stability: 1.0, ..Response::default() });
             }
             if again && !(sound && response.stability > 0.0) {
                 spent = (spent.0 + equilibrium.steps, spent.1 + equilibrium.updates);

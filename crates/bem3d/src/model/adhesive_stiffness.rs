@@ -70,7 +70,8 @@ impl AdhesiveContact<'_> {
         let mut solved = |error: f64| found.solve_error = Some(found.solve_error.unwrap_or(0.0).max(error));
         if self.surface.outputs.needs_fixed_area() {
             let (problem, tolerance) = (&mut self.surface.problem, self.surface.options.tolerance);
-            if let Some(k) = fixed_area(problem, self.attraction, state, tolerance, stop) {
+            // A stopped state has no stiffness.
+            if let Ok(Some(k)) = fixed_area(problem, self.attraction, state, tolerance, stop) {
                 found.steps = k.steps;
                 found.fixed_area = Some(k.k());
                 solved(k.solve_error);

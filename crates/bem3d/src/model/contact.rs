@@ -3,22 +3,24 @@
 
 use super::adhesive::AdhesivePath;
 use super::certificate::LoadError;
-use super::increment::pressed;
 use super::load::{LoadSequence, ScaledLoad, ScaledNormal, ScaledTangential};
-use super::options::{Bem3d, bytes_per_cell, friction_bytes_per_cell};
+use super::options::Bem3d;
 use super::path_memory::{PlaceInLoads, Remembered};
 use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::SurfaceFriction;
+use super::solve_memory::{factor_bytes, solve_bytes};
 use crate::active_set::{self, Control, Limits, Solved};
 use crate::geometry::{CellSet, Grid};
 use crate::parts::{Part, Recorder};
 use crate::response::normal::{self, Responding, StiffnessRequest};
 use crate::tuning::Tuning;
 use contact_model::{
-    ContactState, Error, Load, NormalLoad, Normalisation, PathMemory, PreparedContact, RequiredMemory,
-    Result, Scene, Status, Step, Stop,
+    Cells, ContactState, Error, Interrupted, Load, NormalLoad, Normalisation, PathMemory, PreparedContact,
+    RequiredMemory, Result, Scene, Status, Step, Stop, Watch,
 };
 use std::borrow::Cow;
+use std::cell::Cell;
+use std::f64::consts::PI;
 
 /// One surface under loads.
 ///
@@ -63,6 +65,7 @@ impl PreparedBem3d {
 
     /// The state of a load, with the given relation to other loads.
     fn at(&mut self, load: ScaledLoad, loads: LoadSequence, stop: Stop<'_>) -> Result<ContactState> {
+        let stop = &Heard { stop, heard: Cell::new(false) };
         if self.place.loads != loads {
             let solved = self.place.solved.take();
             self.begin(loads);
@@ -77,7 +80,7 @@ impl PreparedBem3d {
         let state = match self.state_at(load, loads, stop) {
             // What a solve finds while it is being stopped, such as a pull-off, need not be so.
             Err(error) if stop.stops() && !matches!(error, Error::Stopped { .. }) => {
-                return Err(Error::Stopped { best: None });
+                return Err(Interrupted.without_state());
             }
             found => found?,
         };
@@ -86,14 +89,16 @@ impl PreparedBem3d {
     }
 
     fn state_at(&mut self, load: ScaledLoad, loads: LoadSequence, stop: Stop<'_>) -> Result<ContactState> {
-        self.surface.forget_plans();
         if let (Some(sliding), LoadSequence::Single) = (&mut self.surface.sliding, loads) {
             sliding.begin();
         }
-        match &mut self.adhesion {
+        let state = match &mut self.adhesion {
             Some(adhesion) => adhesion.on(&mut self.surface).at(load, loads, stop),
             None => self.surface.at(load, stop),
-        }
+        };
+        // Those of the next load would depend on them, and the memory is free meanwhile.
+        self.surface.forget_plans();
+        state
     }
 
     /// Takes the virgin surface again.
@@ -103,6 +108,24 @@ impl PreparedBem3d {
         if let Some(adhesion) = &mut self.adhesion {
             adhesion.last = None;
         }
+    }
+}
+
+/// A stop that goes on to say so once it has: what was left unfinished is then never taken for finished.
+struct Heard<'a> {
+    stop: Stop<'a>,
+    heard: Cell<bool>,
+}
+
+impl Watch for Heard<'_> {
+    fn stops(&self) -> bool {
+        let stops = self.heard.get() || self.stop.stops();
+        self.heard.set(stops);
+        stops
+    }
+
+    fn residual(&self, residual: f64, tolerance: f64) {
+        self.stop.residual(residual, tolerance);
     }
 }
 
@@ -118,15 +141,11 @@ impl PreparedContact for PreparedBem3d {
 
     /// Cost O(N).
     fn required_memory(&self, load: Load) -> Option<RequiredMemory> {
-        if self.adhesion.is_some() {
-            // Attraction reaches beyond the contact, and how far is not known before.
-            return None;
-        }
         let surface = &self.surface;
         let Grid { columns, rows, .. } = surface.problem.grid();
         let contact = surface.expected_contact(load.normal);
-        let friction = surface.sliding.as_ref().map_or(0.0, |_| friction_bytes_per_cell(contact));
-        let bytes = (bytes_per_cell(contact) + friction) * columns as f64 * rows as f64;
+        let bytes = solve_bytes(&surface.effects, &surface.outputs, Cells { columns, rows }, contact);
+        let bytes = bytes + factor_bytes(surface.largest_factor(load.normal, contact), contact);
         Some(RequiredMemory { what: format!("a solve on {columns} columns x {rows} rows").into(), bytes })
     }
 
@@ -212,9 +231,10 @@ impl PreparedSurface {
         if self.sliding.as_ref().is_some_and(SurfaceFriction::is_coupled) {
             return self.at_coupled(target, tangential, stop);
         }
-        let (solved, tangent) = self.settle(target, self.limits(), stop);
+        let (solved, tangent) =
+            self.settle(target, self.limits(), stop).map_err(Interrupted::without_state)?;
         let error = self.load_error(target, &solved, tangent.as_ref());
-        let slid = self.slide(pressed(&solved), tangential, stop)?;
+        let slid = self.slide_under(&solved, tangential, stop)?;
         let recorder = self.problem.operators.recorder().clone();
         recorder.timed(Part::Results, || self.state(solved, tangent, error, slid, stop))
     }
@@ -232,6 +252,26 @@ impl PreparedSurface {
         }
     }
 
+    /// The largest set of cells that a solve may factor, where a share of the cells touches; `None` where that is
+    /// too many.
+    fn largest_factor(&self, load: NormalLoad, contact: f64) -> Option<usize> {
+        let (problem, tuning) = (&self.problem, self.problem.operators.tuning());
+        let (planner, window) = (problem.operators.planner(), problem.grid().window());
+        let (mut low, mut high) = (0, tuning.largest_factor);
+        while low < high {
+            let middle = (low + high).div_ceil(2);
+            (low, high) = if planner.factors(middle, window) { (middle, high) } else { (low, middle - 1) };
+        }
+        if contact * problem.grid().count() as f64 > 2.0 * low as f64 {
+            return None;
+        }
+        // The first guess of a light load: the cells below a plane that one cell alone would hold.
+        let NormalLoad::Force(force) = load else { return Some(low) };
+        let force = self.nondimensional.force_in(force) / PI;
+        let reach = problem.candidates.range().first + force * problem.operators.table().own();
+        Some(problem.candidates.z().iter().filter(|z| **z < reach).take(low).count())
+    }
+
     /// An estimate of the share of the cells that a load brings into contact.
     fn expected_contact(&self, load: NormalLoad) -> f64 {
         let z = self.problem.candidates.z();
@@ -243,12 +283,7 @@ impl PreparedSurface {
             }
             // Rough contact has an area of about 2 F/(E* g), g the rms gradient.
             NormalLoad::Force(force) => {
-                let squares = z.chunks_exact(self.problem.grid().columns).flat_map(|row| row.windows(2));
-                let squares =
-                    squares.map(|pair| (pair[1] - pair[0]).powi(2)).filter(|square| square.is_finite());
-                let (sum, count) =
-                    squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
-                let gradient = self.height / self.cell().0 * (2.0 * sum / f64::max(count, 1.0)).sqrt();
+                let gradient = *self.gradient.get_or_init(|| self.rms_gradient());
                 let share = 2.0 * force / (self.normalisation.contact_modulus * self.size.area() * gradient);
                 // Of a flat surface all.
                 if share.is_finite() { share.clamp(0.0, 1.0) } else { 1.0 }
@@ -257,26 +292,39 @@ impl PreparedSurface {
         }
     }
 
+    /// The rms gradient of the heights, from differences along x.
+    fn rms_gradient(&self) -> f64 {
+        let z = self.problem.candidates.z();
+        let squares = z.chunks_exact(self.problem.grid().columns).flat_map(|row| row.windows(2));
+        let squares = squares.map(|pair| (pair[1] - pair[0]).powi(2)).filter(|square| square.is_finite());
+        let (sum, count) = squares.fold((0.0, 0.0), |(sum, count), square| (sum + square, count + 1.0));
+        self.height / self.cell().0 * (2.0 * sum / f64::max(count, 1.0)).sqrt()
+    }
+
     /// Solves for the pressure and, where requested, for the stiffness. The stiffness may need a more
     /// accurate pressure than the certificate does: as long as undecided cells could change it by more than
-    /// the tolerance, the contact set is solved further.
+    /// the tolerance, the contact set is solved further. A pressure that was found before a stop has none.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop before a pressure was found.
     pub(super) fn settle(
         &mut self,
         target: Control,
         mut limits: Limits,
         stop: Stop<'_>,
-    ) -> (Solved, Option<Tangent>) {
+    ) -> std::result::Result<(Solved, Option<Tangent>), Interrupted> {
         let tuning = *self.problem.operators.tuning();
-        let guess = self.guess(target, limits, stop);
-        let mut solved = active_set::solve(&mut self.problem, target, guess, limits, stop);
-        if self.is_complete(&solved) || !self.outputs.needs_stiffness() {
-            return (solved, None);
+        let guess = self.guess(target, limits, stop)?;
+        let mut solved = active_set::solve(&mut self.problem, target, guess, limits, stop)?;
+        let has_tangent = solved.status != Status::Stopped && !self.is_complete(&solved);
+        if !has_tangent || !self.outputs.needs_stiffness() {
+            return Ok((solved, None));
         }
         // The last state is not needed any more, and as large as the contact.
         let last = self.last.take();
         let k = last.as_ref().and_then(|last| last.tangent.as_ref()).map(|&(_, k)| k);
         let q = last.and_then(|last| last.tangent_at(&solved, &self.responding(&solved).cells, &tuning));
-        let mut tangent = self.tangent(&solved, (q, None), k, stop);
+        let Ok(mut tangent) = self.tangent(&solved, (q, None), k, stop) else { return Ok((solved, None)) };
         for _ in 0..tuning.tightenings {
             let (error, before) = (self.tangent_error(&tangent), solved.residuals.worst());
             if solved.status != Status::Converged || error <= self.options.tolerance || stop.stops() {
@@ -287,7 +335,7 @@ impl PreparedSurface {
                 tuning.tightened(self.options.tolerance / error) * limits.tolerance.min(before);
             let continuation = std::mem::take(&mut solved.continuation);
             let again = Solved { continuation, ..solved.clone() };
-            let next = active_set::resume(&mut self.problem, target, again, limits, stop);
+            let Ok(next) = active_set::resume(&mut self.problem, target, again, limits, stop) else { break };
             solved.steps += next.steps;
             if next.residuals.worst() >= before {
                 solved.continuation = next.continuation;
@@ -300,44 +348,59 @@ impl PreparedSurface {
             let whole = tangent.whole.map(|whole| next.contact.carry(&solved.contact, whole.q()));
             let steps = solved.steps + tangent.stiffness.steps;
             solved = Solved { steps, status, ..next };
-            tangent = self.tangent(&solved, (Some(q), whole), k, stop);
+            tangent = match self.tangent(&solved, (Some(q), whole), k, stop) {
+                Ok(tangent) => tangent,
+                Err(Interrupted) => return Ok((solved, None)),
+            };
         }
-        (solved, Some(tangent))
+        Ok((solved, Some(tangent)))
     }
 
     /// The stiffnesses of a state from guesses of q, along the branch and of the whole contact, and of k.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop.
     pub(super) fn tangent(
         &mut self,
         solved: &Solved,
         (q, of_whole): (Option<Vec<f64>>, Option<Vec<f64>>),
         k: Option<f64>,
         stop: Stop<'_>,
-    ) -> Tangent {
+    ) -> std::result::Result<Tangent, Interrupted> {
         let responding = self.responding(solved);
         let (problem, tolerance) = (&mut self.problem, self.options.tolerance);
         let wanted = StiffnessRequest { tolerance, q, expected: k };
-        let stiffness = normal::solve_of_zero_mean(problem, solved, &responding, wanted, stop);
+        let stiffness = normal::solve_of_zero_mean(problem, solved, &responding, wanted, stop)?;
         let another = responding.cells.len() != solved.contact.len();
         let wanted = another && self.outputs.needs_fixed_area() && !self.is_full(&solved.contact);
-        let whole = wanted.then(|| {
+        let whole = if wanted {
             let whole = Responding::whole(solved, self.problem.bounds);
             let wanted = StiffnessRequest { tolerance, q: of_whole, expected: None };
-            normal::solve_of_zero_mean(&mut self.problem, solved, &whole, wanted, stop)
-        });
-        Tangent { stiffness, cells: responding.cells.into_owned(), whole }
+            Some(normal::solve_of_zero_mean(&mut self.problem, solved, &whole, wanted, stop)?)
+        } else {
+            None
+        };
+        Ok(Tangent { stiffness, cells: responding.cells.into_owned(), whole })
     }
 
     /// An upper estimate of the stiffness to a few per cent; infinite where the contact is complete.
-    pub(super) fn rough_stiffness(&mut self, solved: &Solved, stop: Stop<'_>) -> f64 {
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop.
+    pub(super) fn rough_stiffness(
+        &mut self,
+        solved: &Solved,
+        stop: Stop<'_>,
+    ) -> std::result::Result<f64, Interrupted> {
         const ROUGH: f64 = 0.02;
         if self.is_complete(solved) {
-            return f64::INFINITY;
+            return Ok(f64::INFINITY);
         }
         let responding = self.responding(solved);
         let wanted = StiffnessRequest { tolerance: ROUGH, ..StiffnessRequest::default() };
-        let found = normal::solve(&mut self.problem, solved, &responding, wanted, stop);
+        let found = normal::solve(&mut self.problem, solved, &responding, wanted, stop)?;
         let k = found.k() * (1.0 + found.solve_error.min(1.0));
-        k * self.magnification(k)
+        Ok(k * self.magnification(k))
     }
 
     /// The cells that follow a small change of the load as it goes on: those below the hardness. On a path,

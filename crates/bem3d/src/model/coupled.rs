@@ -16,7 +16,7 @@ use crate::friction::{
     TangentialControl, advance_coupled,
 };
 use crate::response::TangentialStiffness;
-use contact_model::{ContactState, Error, Result, Status, Stop};
+use contact_model::{ContactState, Error, Interrupted, Result, Status, Stop};
 
 /// The step of a difference quotient, over the elastic approach of a circle around the contact.
 const STEP: f64 = 1e-4;
@@ -118,7 +118,8 @@ impl PreparedSurface {
             return Ok(None);
         }
         let tuning = *self.problem.operators.tuning();
-        let mut found = self.tangent(&state.normal, (None, None), None, stop);
+        let mut found =
+            self.tangent(&state.normal, (None, None), None, stop).map_err(Interrupted::without_state)?;
         // As in `settle`, as long as undecided cells could change it by more than the tolerance.
         for _ in 0..tuning.tightenings {
             let (error, before_error) = (self.tangent_error(&found), state.normal.residuals.worst());
@@ -131,7 +132,8 @@ impl PreparedSurface {
                 break;
             }
             state.normal.steps += found.steps();
-            found = self.tangent(&state.normal, (None, None), None, stop);
+            found =
+                self.tangent(&state.normal, (None, None), None, stop).map_err(Interrupted::without_state)?;
         }
         Ok(Some(found))
     }
@@ -145,7 +147,9 @@ impl PreparedSurface {
         state: &mut CoupledState,
         stop: Stop<'_>,
     ) -> Result<[Option<TangentialStiffness>; 2]> {
-        let mut stiffness = self.tangential_stiffness(&mut sliding.friction, &state.tangential, stop);
+        let mut stiffness = self
+            .tangential_stiffness(&mut sliding.friction, &state.tangential, stop)
+            .map_err(Interrupted::without_state)?;
         for _ in 0..TIGHTENINGS {
             let error = branch_error(&stiffness);
             if error <= self.options.tolerance {
@@ -156,7 +160,9 @@ impl PreparedSurface {
             if !self.tighten(sliding, step, *limits, state, stop)? {
                 break;
             }
-            stiffness = self.tangential_stiffness(&mut sliding.friction, &state.tangential, stop);
+            stiffness = self
+                .tangential_stiffness(&mut sliding.friction, &state.tangential, stop)
+                .map_err(Interrupted::without_state)?;
         }
         Ok(stiffness)
     }
@@ -187,7 +193,7 @@ impl PreparedSurface {
         };
         let surface = CoupledSurface { problem: &mut self.problem, undeformed, friction };
         let found = advance_coupled(surface, before, load, start, stop);
-        found.map_err(|beyond| self.gross_slip(control, beyond))
+        found.map_err(|error| self.not_advanced(control, error))
     }
 
     /// Solves a converged state further. Returns whether that made it better; it counts as converged as long as it

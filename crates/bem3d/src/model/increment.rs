@@ -7,13 +7,15 @@ use super::prepared::PreparedSurface;
 use super::sliding::{Slid, SurfaceFriction};
 use crate::active_set::{Candidates, Solved};
 use crate::friction::{
-    ForceTooLarge, FrictionLimits, FrictionLoad, FrictionSolver, FrictionState, PressedCells, SlipMemory,
+    FrictionLimits, FrictionLoad, FrictionSolver, FrictionState, NotAdvanced, PressedCells, SlipMemory,
     SlipStep, TangentialControl,
 };
 use crate::geometry::CellSet;
 use crate::response::TangentialStiffness;
 use crate::response::tangential::{self, StiffnessOf};
-use contact_model::{Error, Fields, Result, Status, StickSlip, Stop, Tangential, TangentialState};
+use contact_model::{
+    Error, Fields, Interrupted, Result, Status, StickSlip, Stop, Tangential, TangentialState,
+};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -39,6 +41,20 @@ impl PreparedSurface {
     pub(super) fn friction_limits(&self) -> FrictionLimits {
         let Bem3d { tolerance, max_outer_iterations: iterations, .. } = self.options;
         FrictionLimits { tolerance, unresolved: UNRESOLVED * tolerance, iterations }
+    }
+
+    /// The increment of friction under a solved pressure; `None` without friction, and where the pressure was
+    /// stopped.
+    ///
+    /// # Errors
+    /// As [`Self::slide`].
+    pub(super) fn slide_under(
+        &mut self,
+        solved: &Solved,
+        load: ScaledTangential,
+        stop: Stop<'_>,
+    ) -> Result<Option<Slid>> {
+        if solved.status == Status::Stopped { Ok(None) } else { self.slide(pressed(solved), load, stop) }
     }
 
     /// The increment of friction under a pressure; `None` without friction.
@@ -69,8 +85,9 @@ impl PreparedSurface {
         let work = friction.work();
         let load = FrictionLoad { law: *law, control };
         let first = friction.advance(SlipStep { before, contact, load, guess: None }, limits, stop);
-        let mut state = first.map_err(|beyond| self.gross_slip(control, beyond))?;
-        let mut stiffness = self.tangential_stiffness(friction, &state, stop);
+        let mut state = first.map_err(|error| self.not_advanced(control, error))?;
+        // A stopped state has no stiffness.
+        let mut stiffness = self.tangential_stiffness(friction, &state, stop).unwrap_or([None, None]);
         // The error of a stiffness by the cells that may stick or slip falls as the square root of the gap.
         for _ in 0..TIGHTENINGS {
             let error = branch_error(&stiffness);
@@ -86,7 +103,7 @@ impl PreparedSurface {
                 break;
             }
             state = next;
-            stiffness = self.tangential_stiffness(friction, &state, stop);
+            stiffness = self.tangential_stiffness(friction, &state, stop).unwrap_or([None, None]);
         }
         self.count(work, friction.work());
         Ok(Slid { prescribed, state, stiffness, normal_stiffness: None, rounds: None })
@@ -99,16 +116,18 @@ impl PreparedSurface {
         friction: &mut FrictionSolver,
         state: &FrictionState,
         stop: Stop<'_>,
-    ) -> [Option<TangentialStiffness>; 2] {
+    ) -> std::result::Result<[Option<TangentialStiffness>; 2], Interrupted> {
         let cells = &state.memory.cells;
         let (full, sticks) = (self.is_full(cells), state.stick.len() == cells.len());
         let asked = [
             (self.outputs.tangential_stiffness && !(full && sticks), StiffnessOf::Branch),
             (self.outputs.tangential_stiffness_stuck && !full, StiffnessOf::FullStick),
         ];
-        asked.map(|(asked, of)| {
-            asked.then(|| tangential::solve(friction, state, of, self.options.tolerance, stop))
-        })
+        let mut found = [None, None];
+        for (found, (_, of)) in found.iter_mut().zip(asked).filter(|(_, (asked, _))| *asked) {
+            *found = Some(tangential::solve(friction, state, of, self.options.tolerance, stop)?);
+        }
+        Ok(found)
     }
 
     /// Adds the work of friction to that of the load.
@@ -117,12 +136,14 @@ impl PreparedSurface {
         self.problem.operators.plans.solves += now[1] - solves;
     }
 
-    pub(super) fn gross_slip(&self, control: TangentialControl, beyond: ForceTooLarge) -> Error {
+    /// The error of a load without a state at its end.
+    pub(super) fn not_advanced(&self, control: TangentialControl, error: NotAdvanced) -> Error {
+        let NotAdvanced::Force { largest } = error else { return Interrupted.without_state() };
         let TangentialControl::Force([x, y]) = control else {
             return Error::unsupported(NAME, "a displacement that friction does not hold");
         };
         let unit = |force: f64| self.nondimensional.force(PI * force);
-        match (unit(x.hypot(y)), unit(beyond.largest)) {
+        match (unit(x.hypot(y)), unit(largest)) {
             (Ok(force), Ok(limit)) => Error::gross_slip(force, limit),
             (Err(error), _) | (_, Err(error)) => error,
         }
@@ -138,7 +159,7 @@ impl PreparedSurface {
             TangentialControl::Displacement(displacement) => displacement,
             force @ TangentialControl::Force([x, y]) => {
                 if x.hypot(y) > 0.0 {
-                    return Err(self.gross_slip(force, ForceTooLarge { largest: 0.0 }));
+                    return Err(self.not_advanced(force, NotAdvanced::Force { largest: 0.0 }));
                 }
                 sliding.before.displacement
             }

@@ -2,14 +2,13 @@
 //! constant.
 
 use super::certificate::LoadError;
-use super::increment::pressed;
 use super::load::ScaledTangential;
 use super::options::NAME;
 use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::SurfaceFriction;
 use crate::active_set::{Bounds, Control, Solved};
 use crate::tuning::{FLOWING_GAP_LOADS, GAP_LOADS, GAP_STEP, POLISHED_GAP, POLISHING_LOADS};
-use contact_model::{ContactState, Error, Result, Status, Stop};
+use contact_model::{ContactState, Error, Interrupted, Result, Status, Stop};
 
 /// The search for a force by the mean gap that it leaves, in x = ln F.
 struct GapSearch {
@@ -113,6 +112,7 @@ impl PreparedSurface {
         let mut polish = POLISHING_LOADS;
         for tries in 0..GAP_LOADS {
             let tried = self.try_gap(asked, Control::Force(search.x.exp()), &mut polish, stop);
+            let tried = tried.map_err(Interrupted::without_state)?;
             steps += tried.solved.steps;
             if tried.ends {
                 return self.at_gap(tried, load, steps, stop);
@@ -185,13 +185,16 @@ impl PreparedSurface {
         stop: Stop<'_>,
     ) -> Result<ContactState> {
         let first = self.problem.candidates.range().first;
-        let mut last = None;
+        let (mut last, mut interrupted) = (None, Ok(()));
         // How much the gap at an approach is too large; 0 ends the search.
         let mut miss = |d: f64| {
             if d <= first {
                 return self.mean - first - asked;
             }
-            let tried = self.try_gap(asked, Control::Approach(d), &mut 0, stop);
+            let Ok(tried) = self.try_gap(asked, Control::Approach(d), &mut 0, stop) else {
+                interrupted = Err(Interrupted);
+                return 0.0;
+            };
             steps += tried.solved.steps;
             if tried.ends {
                 last = Some(tried);
@@ -214,6 +217,7 @@ impl PreparedSurface {
             step *= 2.0;
         }
         numerics::root::between(far, near, miss);
+        interrupted.map_err(Interrupted::without_state)?;
         match last {
             Some(tried) => self.at_gap(tried, load, steps, stop),
             None => Err(self.no_such_gap(asked)?),
@@ -223,9 +227,15 @@ impl PreparedSurface {
     /// Solves for a load in the search for a mean gap. One that meets the gap is followed by another one, up to
     /// `polish` times, unless it meets it by far: near full contact the force is so convex, and its stiffness
     /// depends so much on the gap, that their errors would be too small otherwise.
-    fn try_gap(&mut self, asked: f64, control: Control, polish: &mut usize, stop: Stop<'_>) -> GapTried {
+    fn try_gap(
+        &mut self,
+        asked: f64,
+        control: Control,
+        polish: &mut usize,
+        stop: Stop<'_>,
+    ) -> std::result::Result<GapTried, Interrupted> {
         let limits = self.limits();
-        let (solved, tangent) = self.settle(control, limits, stop);
+        let (solved, tangent) = self.settle(control, limits, stop)?;
         let miss = self.gap_of(&solved) - asked;
         let bound = limits.tolerance * limits.height.unwrap_or(self.mean);
         let mut met = miss.abs() <= bound;
@@ -234,7 +244,7 @@ impl PreparedSurface {
             met = false;
         }
         let ends = met || solved.status != Status::Converged || stop.stops();
-        GapTried { solved, tangent, miss, ends }
+        Ok(GapTried { solved, tangent, miss, ends })
     }
 
     /// The state of the load that ended the search, after a number of steps.
@@ -250,11 +260,12 @@ impl PreparedSurface {
         let k = match &tangent {
             Some(tangent) => self.stiffest(&solved, Some(tangent)),
             // A secant between the loads tried would be too small: the force is convex.
-            None => self.rough_stiffness(&solved, stop),
+            // A stopped state has no error of the force.
+            None => self.rough_stiffness(&solved, stop).unwrap_or(f64::INFINITY),
         };
         let error = self.force_error(&solved, k, miss.abs());
         let error = LoadError { load: miss.abs() / self.limits().height.unwrap_or(self.mean), ..error };
-        let slid = self.slide(pressed(&solved), load, stop)?;
+        let slid = self.slide_under(&solved, load, stop)?;
         self.state(solved, tangent, error, slid, stop)
     }
 

@@ -9,25 +9,6 @@ pub const NAME: &str = "bem3d";
 /// largest of `peak_memory_bytes` in `data/bench/scaling.csv`, rounded up.
 pub const BYTES_PER_CELL: f64 = 50.0;
 
-/// Additional memory of a contact that fills the grid, bytes for each cell, by the same table.
-const FILLED_BYTES: f64 = 150.0;
-/// Additional memory of friction in such a contact, bytes for each cell: 580 at N = 1025 with 94 % in contact
-/// (2026-11), rounded up.
-const FRICTION_BYTES: f64 = 600.0;
-/// The bounding box of a contact with a share s of the cells fills about this multiple of s of the grid.
-const BOX_OVER_CONTACT: f64 = 6.0;
-
-/// Memory of a solve beyond [`BYTES_PER_CELL`], bytes for each cell of the grid, where a share of the cells
-/// is in contact.
-pub fn bytes_per_cell(contact: f64) -> f64 {
-    FILLED_BYTES * (BOX_OVER_CONTACT * contact).min(1.0)
-}
-
-/// Memory of friction beyond [`bytes_per_cell`], in the same way.
-pub(super) fn friction_bytes_per_cell(contact: f64) -> f64 {
-    FRICTION_BYTES * (BOX_OVER_CONTACT * contact).min(1.0)
-}
-
 /// Numerics of the boundary-element model.
 ///
 /// ```

@@ -12,11 +12,11 @@ use crate::response::NormalStiffness;
 use crate::response::normal::magnification;
 use crate::tuning::Tuning;
 use contact_model::{
-    Boundary, Error, Hardness, HeightMap, Nondimensionalisation, Normalisation, Outputs, Result, Scene, Size,
-    Stop, Surface,
+    Boundary, Effects, Error, Hardness, HeightMap, Interrupted, Nondimensionalisation, Normalisation,
+    Outputs, Result, Scene, Size, Stop, Surface,
 };
 use std::f64::consts::PI;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// The stiffnesses of a state.
 #[derive(Debug)]
@@ -42,6 +42,7 @@ impl Tangent {
 pub struct PreparedSurface {
     pub(super) options: Bem3d,
     pub(super) outputs: Outputs,
+    pub(super) effects: Effects,
     pub(super) problem: Problem,
     pub(super) nondimensional: Nondimensionalisation,
     /// Unit of lengths normal to the surface: the rms height where there is one.
@@ -49,6 +50,8 @@ pub struct PreparedSurface {
     pub(super) normalisation: Normalisation,
     /// The hardness, nondimensional: the upper bound of the net pressure.
     pub(super) hardness: Option<f64>,
+    /// The rms gradient, once it was asked for.
+    pub(super) gradient: OnceLock<f64>,
     /// Mean of z over the defined points.
     pub(super) mean: f64,
     /// Number of defined points.
@@ -152,12 +155,14 @@ impl PreparedSurface {
         };
         Ok(Self {
             options,
+            effects: scene.effects,
             outputs: profile::outputs(scene.outputs, problem.operators.table().kernel()),
             problem,
             nondimensional,
             height,
             normalisation,
             hardness,
+            gradient: OnceLock::new(),
             mean,
             defined,
             last: None,
@@ -225,15 +230,23 @@ impl PreparedSurface {
     }
 
     /// The guess for a target: the tangent at the last state, or a cold start.
-    pub(super) fn guess(&mut self, target: Control, limits: Limits, stop: Stop<'_>) -> Guess {
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop.
+    pub(super) fn guess(
+        &mut self,
+        target: Control,
+        limits: Limits,
+        stop: Stop<'_>,
+    ) -> std::result::Result<Guess, Interrupted> {
         let tuning = *self.problem.operators.tuning();
         if let Some(last) = &self.last
             && let Some(guess) = last.extrapolated(target, &tuning)
         {
             let (nested, cells) = (self.problem.nested, self.problem.grid().count());
-            let predicted = || active_set::predicted_cells(&mut self.problem, &guess);
-            if !nested || !last.overshoots(target, cells, &tuning, predicted) {
-                return guess;
+            let predicted = || active_set::predicted_cells(&mut self.problem, &guess, stop);
+            if !nested || !last.overshoots(target, cells, &tuning, predicted)? {
+                return Ok(guess);
             }
         }
         active_set::cold_start(&mut self.problem, target, limits, stop)

@@ -4,12 +4,12 @@ use super::certificate::LoadError;
 use super::load::ScaledTangential;
 use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::Slid;
-use crate::active_set::{Bounds, Solved};
+use crate::active_set::{Bounds, CERTIFIED_NS, Solved};
 use crate::geometry::{CellSet, Grid};
 use crate::response::NormalStiffness;
 use contact_model::{
-    AdhesiveState, Boundary, Certificate, ContactResolution, ContactState, Error, Field, Fields, Patches,
-    PlasticState, Result, SolveReport, Status, Stop, Work, never,
+    AdhesiveState, Boundary, Certificate, ContactResolution, ContactState, Error, Field, Fields, Interrupted,
+    Patches, PlasticState, Result, SolveReport, Status, Stop, Work, check_stop, never,
 };
 use std::f64::consts::PI;
 
@@ -89,7 +89,7 @@ impl PreparedSurface {
             (of.force_error, of.tangential_stiffness_error) = (None, None);
             slid = slid.map(|slid| Slid { stiffness: [None, None], normal_stiffness: None, ..slid });
         }
-        Ok((self.assemble(normal, slid.as_ref())?, slid))
+        Ok((self.assemble(normal, slid.as_ref(), stop)?, slid))
     }
 
     /// Keeps what a state leaves on a path: its new indentation and its slip.
@@ -102,10 +102,20 @@ impl PreparedSurface {
     }
 
     /// The state in the units of the scene, with the requested outputs.
-    fn assemble(&mut self, found: NormalSolution<'_>, slid: Option<&Slid>) -> Result<ContactState> {
+    fn assemble(
+        &mut self,
+        found: NormalSolution<'_>,
+        slid: Option<&Slid>,
+        stop: Stop<'_>,
+    ) -> Result<ContactState> {
         let units = self.nondimensional;
-        let mut fields = self.fields(found.pressure, found.d, found.indented)?;
-        self.raise(slid, &mut fields)?;
+        // Of a state that was stopped a caller gets what takes little time.
+        let stopped = found.status == Status::Stopped;
+        let stop = if stopped { &never } else { stop };
+        let window = self.problem.grid().window();
+        let is_whole = !stopped || self.problem.operators.plans.nanoseconds(window) < CERTIFIED_NS;
+        let mut fields = if is_whole { self.fields(&found, stop)? } else { None };
+        self.raise(slid, &mut fields, stop)?;
         if let (Some(fields), Some(slid)) = (&mut fields, slid) {
             self.slip_fields(slid, fields)?;
         }
@@ -129,7 +139,7 @@ impl PreparedSurface {
             .with_plastic(self.plastic(found.yielded, found.indented.1)?)
             .with_adhesive(found.adhesive)
             .with_tangential(tangential)
-            .with_patches(self.patches(found.contact)?)
+            .with_patches(if is_whole { self.patches(found.contact, stop)? } else { None })
             .with_resolution(found.resolution)
             .with_fields(fields)
             .completed(&self.outputs, self.normalisation.contact_modulus)
@@ -248,18 +258,16 @@ impl PreparedSurface {
         Ok(Some(PlasticState::new(area, volume, units.pressure(PI * hardness)?)))
     }
 
-    /// The requested fields of a (net) pressure on a set at an approach, with the depth of the indentation of
-    /// saturated cells.
-    pub(super) fn fields(
-        &mut self,
-        (set, pressure): (&CellSet, &[f64]),
-        d: f64,
-        (saturated, depth): (&CellSet, &[f64]),
-    ) -> Result<Option<Fields>> {
+    /// The requested fields.
+    ///
+    /// # Errors
+    /// [`contact_model::Error::Stopped`] by the stop.
+    fn fields(&mut self, found: &NormalSolution<'_>, stop: Stop<'_>) -> Result<Option<Fields>> {
         if !self.outputs.any_field() {
             return Ok(None);
         }
         let grid = self.problem.grid();
+        let NormalSolution { pressure: (set, pressure), d, indented: (saturated, depth), .. } = *found;
         let mut fields = Fields::default();
         if self.outputs.pressure {
             let mut p = vec![0.0; grid.count()];
@@ -273,7 +281,8 @@ impl PreparedSurface {
         }
         if self.outputs.displacement || self.outputs.gap {
             let mut u = Vec::new();
-            self.problem.operators.exact(set, pressure, &CellSet::all(grid), &mut u);
+            let done = self.problem.operators.exact(set, pressure, &CellSet::all(grid), &mut u, stop);
+            done.map_err(Interrupted::without_state)?;
             // What the constant in the kernel adds to every displacement.
             let shift = self.problem.operators.table().shift() * pressure.iter().sum::<f64>();
             let height = self.height;
@@ -294,10 +303,11 @@ impl PreparedSurface {
     }
 
     /// Adds what tractions displace to the displacement, where both problems are coupled. The gap has it already.
-    fn raise(&mut self, slid: Option<&Slid>, fields: &mut Option<Fields>) -> Result<()> {
+    fn raise(&mut self, slid: Option<&Slid>, fields: &mut Option<Fields>, stop: Stop<'_>) -> Result<()> {
         let (Some(sliding), Some(slid)) = (&mut self.sliding, slid) else { return Ok(()) };
         let Some(Fields { displacement: Some(displacement), .. }) = fields else { return Ok(()) };
-        let Some(raised) = sliding.friction.normal_displacement(&slid.state.memory) else { return Ok(()) };
+        let raised = sliding.friction.normal_displacement(&slid.state.memory, stop);
+        let Some(raised) = raised.map_err(Interrupted::without_state)? else { return Ok(()) };
         let height = self.height;
         let values = displacement.values().iter().zip(&raised).map(|(u, raised)| u + raised * height);
         *displacement = self.field(values.collect())?;
@@ -381,10 +391,14 @@ impl PreparedSurface {
     }
 
     /// Connected patches of the contact set, where requested.
-    pub(super) fn patches(&self, contact: &CellSet) -> Result<Option<Patches>> {
+    ///
+    /// # Errors
+    /// [`contact_model::Error::Stopped`] by the stop, which is asked before.
+    pub(super) fn patches(&self, contact: &CellSet, stop: Stop<'_>) -> Result<Option<Patches>> {
         if !self.outputs.contact_patches {
             return Ok(None);
         }
+        check_stop(stop)?;
         let (cells, index, boundary) = self.indexed(contact);
         let sizes = surface_gen::patches(cells, &index, boundary);
         let areas =

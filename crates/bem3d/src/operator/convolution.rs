@@ -5,6 +5,7 @@ use super::transform::Transform;
 use crate::geometry::{CellSet, Lengths, Window};
 use crate::kernel::Tensor;
 use crate::real::{Real, binary_unit, update};
+use contact_model::{Interrupted, Stop};
 use rustfft::num_complex::Complex;
 use std::fmt;
 use std::sync::Arc;
@@ -60,53 +61,77 @@ where
 
     /// Transforms the rows of the window: `fill` writes row y of each component, `(component, y, row)`, which is
     /// zero before, for all with `given(component, y)`.
+    ///
+    /// # Errors
+    /// As [`Transform::forward`].
     pub fn forward(
         &mut self,
         given: impl Fn(usize, usize) -> bool + Sync,
         fill: impl Fn(usize, usize, &mut [T]) + Sync,
-    ) {
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         let (rows, height) = (self.transform.rows(), self.window().height);
         self.transform.forward(
             |at| at % rows < height && given(at / rows, at % rows),
             |at, line| fill(at / rows, at % rows, line),
-        );
+            stop,
+        )
     }
 
     /// Multiplies the spectra by the symbol: a transform of each column forward and back. Only the bands of
     /// rows in `wanted` are valid afterwards.
     ///
     /// Cost: O(lx ly log) with [`Self::forward`] and [`Self::backward`]; rows of zeros are not transformed.
-    pub fn multiply(&mut self, wanted: impl Fn(usize) -> bool) {
+    ///
+    /// # Errors
+    /// As [`Transform::change`].
+    pub fn multiply(&mut self, wanted: impl Fn(usize) -> bool, stop: Stop<'_>) -> Result<(), Interrupted> {
         let (rows, height) = (self.transform.rows(), self.window().height);
         let (symbol, half) = (&self.symbol, self.transform.lengths().y / 2 + 1);
         self.transform.change(
             |at| at % rows < height && wanted(at % rows),
             |kx, columns| multiply(columns, &symbol[kx * half..][..half]),
-        );
+            stop,
+        )
     }
 
     /// Transforms rows back: `take` reads row y of each component, `(output, component, y, row)`, where it is
     /// `wanted`, and may write over it. Each band of rows has its own output, those of the first component
     /// before those of the next one.
+    ///
+    /// # Errors
+    /// As [`Transform::backward`].
     pub fn backward<O: Send>(
         &mut self,
         wanted: impl Fn(usize) -> bool + Sync,
         outputs: impl ExactSizeIterator<Item = O> + Send,
         take: impl Fn(&mut O, usize, usize, &mut [T]) + Sync,
-    ) {
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         let (rows, height) = (self.transform.rows(), self.window().height);
         self.transform.backward(
             |at| at % rows < height && wanted(at % rows),
             outputs,
             |output, at, line| take(output, at / rows, at % rows, line),
-        );
+            stop,
+        )
     }
 
     /// The displacements under the components that are given; the others are zero.
     ///
     /// Both sets lie inside the window. Rows without sources are not transformed forward, rows without targets
     /// not backward.
-    pub fn apply_to(&mut self, sources: &CellSet, given: [Option<&[T]>; N], targets: &CellSet, u: &mut [T]) {
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop, which is asked between bands of rows and stripes of columns.
+    pub fn apply_to(
+        &mut self,
+        sources: &CellSet,
+        given: [Option<&[T]>; N],
+        targets: &CellSet,
+        u: &mut [T],
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         let Window { x: x0, y: y0, .. } = self.window();
         let held = |y: usize| targets.row(y + y0).is_some();
         self.forward(
@@ -116,17 +141,19 @@ where
                     row.spread(values, line, x0);
                 }
             },
-        );
-        self.multiply(held);
+            stop,
+        )?;
+        self.multiply(held, stop)?;
         let mut outputs = Vec::with_capacity(N * self.bands().len());
         for u in u.chunks_exact_mut(targets.len().max(1)) {
             outputs.extend(targets.split(u, self.bands().map(|y| y + y0)));
         }
-        self.backward(held, outputs.into_iter(), |(start, u), _, y, line| {
+        let take = |(start, u): &mut (usize, &mut [T]), _, y: usize, line: &mut [T]| {
             if let Some(row) = targets.row(y + y0) {
                 row.after(*start).collect(line, u, x0);
             }
-        });
+        };
+        self.backward(held, outputs.into_iter(), take, stop)
     }
 }
 
@@ -134,9 +161,16 @@ impl<T: Real, const N: usize, const E: usize> InfluenceOperator<T> for Convoluti
 where
     [T; E]: Tensor<T, N>,
 {
-    fn apply(&mut self, sources: &CellSet, t: &[T], targets: &CellSet, u: &mut [T]) {
+    fn apply_until(
+        &mut self,
+        sources: &CellSet,
+        t: &[T],
+        targets: &CellSet,
+        u: &mut [T],
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         let n = sources.len();
-        self.apply_to(sources, std::array::from_fn(|i| Some(&t[i * n..][..n])), targets, u);
+        self.apply_to(sources, std::array::from_fn(|i| Some(&t[i * n..][..n])), targets, u, stop)
     }
 }
 
@@ -145,10 +179,18 @@ impl<const N: usize, const E: usize> InfluenceOperator<f64> for Convolution<f32,
 where
     [f32; E]: Tensor<f32, N>,
 {
-    fn apply(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut [f64]) {
+    fn apply_until(
+        &mut self,
+        sources: &CellSet,
+        p: &[f64],
+        targets: &CellSet,
+        u: &mut [f64],
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         let mut rounded = std::mem::take(&mut self.rounded);
-        rounded.apply(p, u, |p, u| self.apply(sources, p, targets, u));
+        let done = rounded.apply(p, u, |p, u| self.apply_until(sources, p, targets, u, stop));
         self.rounded = rounded;
+        done
     }
 }
 
@@ -161,14 +203,20 @@ pub struct Rounded {
 
 impl Rounded {
     /// `u` from `apply`, which gets `p` in single precision.
-    pub fn apply(&mut self, p: &[f64], u: &mut [f64], apply: impl FnOnce(&[f32], &mut [f32])) {
+    pub fn apply(
+        &mut self,
+        p: &[f64],
+        u: &mut [f64],
+        apply: impl FnOnce(&[f32], &mut [f32]) -> Result<(), Interrupted>,
+    ) -> Result<(), Interrupted> {
         let unit = binary_unit(p);
         let scale = unit.recip();
         self.p.resize(p.len(), 0.0);
         self.u.resize(u.len(), 0.0);
         update(&mut self.p, p, |single, p| *single = (p * scale) as f32);
-        apply(&self.p, &mut self.u);
+        apply(&self.p, &mut self.u)?;
         update(u, &self.u, |u, &single| *u = f64::from(single) * unit);
+        Ok(())
     }
 }
 
@@ -208,10 +256,11 @@ mod tests {
     use super::*;
     use crate::geometry::Grid;
     use crate::kernel::love::influence;
-    use crate::kernel::{Symbol, TangentialTable};
+    use crate::kernel::{NormalTable, Symbol, TangentialTable};
     use crate::operator::DirectSum;
     use crate::tuning::BAND;
     use contact_model::Boundary;
+    use contact_model::never;
     use std::sync::Mutex;
 
     #[test]
@@ -250,21 +299,25 @@ mod tests {
         let (mut read, mut written) = (Vec::new(), Vec::new());
         for _ in 0..2 {
             let seen = Mutex::new(Vec::new());
-            operator.forward(
+            let done = operator.forward(
                 |_, y| given.contains(&y),
                 |_, y, row| {
                     assert!(row.len() == 6 && row.iter().all(|&p| p == 0.0));
                     row[2] = 1.0;
                     seen.lock().unwrap().push(y);
                 },
+                &never,
             );
-            operator.multiply(|y| wanted.contains(&y));
+            done.unwrap();
+            operator.multiply(|y| wanted.contains(&y), &never).unwrap();
             let mut bands: Vec<Vec<(usize, f64)>> = operator.bands().map(|_| Vec::new()).collect();
-            operator.backward(
+            let done = operator.backward(
                 |y| wanted.contains(&y),
                 bands.iter_mut(),
                 |band, _, y, row| band.push((y, row[4])),
+                &never,
             );
+            done.unwrap();
             (read, written) = (seen.into_inner().unwrap(), bands.concat());
         }
         read.sort_unstable();
@@ -275,6 +328,37 @@ mod tests {
             approx::assert_relative_eq!(u, expected, max_relative = 1e-13);
         }
         assert_eq!(written.len(), wanted.len());
+    }
+
+    #[test]
+    fn a_convolution_that_is_left_anywhere_gives_the_same_bits_afterwards() {
+        use std::cell::Cell;
+        let grid = Grid::square(70, 2 * BAND + 5);
+        let cells = CellSet::all(grid);
+        let table = NormalTable::shared(grid, Boundary::Free);
+        let lengths = table.exact_lengths(grid.window());
+        let symbol = table.symbol_f64(lengths, &never).unwrap();
+        let mut operator = FftConvolution::<f64>::new(grid.window(), lengths, symbol);
+        let p: Vec<f64> = (0..grid.count()).map(|k| (0.3 * k as f64).sin()).collect();
+        let mut whole = vec![0.0; p.len()];
+        operator.apply(&cells, &p, &cells, &mut whole);
+        let polls = Cell::new(0);
+        let mut interrupted = 0;
+        for before in 0.. {
+            polls.set(0);
+            let stop = || polls.replace(polls.get() + 1) == before;
+            let mut u = vec![0.0; p.len()];
+            if operator.apply_until(&cells, &p, &cells, &mut u, &stop).is_ok() {
+                assert_eq!(u, whole);
+                break;
+            }
+            assert_eq!(polls.get(), before + 1, "nothing is begun after a stop");
+            interrupted += 1;
+            operator.apply(&cells, &p, &cells, &mut u);
+            assert_eq!(u, whole, "after a stop at poll {before}");
+        }
+        // Three bands of rows twice, and the stripes of columns.
+        assert!(interrupted > 6, "{interrupted}");
     }
 
     #[test]
@@ -324,7 +408,11 @@ mod tests {
                 DirectSum(&table).apply(sources, &q, targets, &mut direct);
                 let window = grid.window();
                 let lengths = table.exact_lengths(window);
-                let mut operator = VectorConvolution::<f64>::new(window, lengths, table.symbol_f64(lengths));
+                let mut operator = VectorConvolution::<f64>::new(
+                    window,
+                    lengths,
+                    table.symbol_f64(lengths, &never).unwrap(),
+                );
                 operator.apply(sources, &q, targets, &mut fast);
                 let scale = direct.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
                 for (a, b) in direct.iter().zip(&fast) {
@@ -332,7 +420,11 @@ mod tests {
                 }
                 let single: Vec<f32> = q.iter().map(|&q| q as f32).collect();
                 let mut rough = vec![0.0f32; fast.len()];
-                let mut operator = VectorConvolution::<f32>::new(window, lengths, table.symbol_f32(lengths));
+                let mut operator = VectorConvolution::<f32>::new(
+                    window,
+                    lengths,
+                    table.symbol_f32(lengths, &never).unwrap(),
+                );
                 operator.apply(sources, &single, targets, &mut rough);
                 for (a, &b) in direct.iter().zip(&rough) {
                     assert!((a - f64::from(b)).abs() < 2e-6 * scale, "{columns} {rows}: {a} {b}");
@@ -363,9 +455,9 @@ mod tests {
         let lengths = Lengths { x: 12, y: 10 };
         let q: Vec<f32> = (0..240).map(|k| (0.7 * k as f32).cos()).collect();
         let (mut u, mut back) = (vec![0.0; 240], vec![0.0; 240]);
-        VectorConvolution::<f32>::new(window, lengths, table.symbol_f32(lengths))
+        VectorConvolution::<f32>::new(window, lengths, table.symbol_f32(lengths, &never).unwrap())
             .apply(&all, &q, &all, &mut u);
-        VectorConvolution::<f32>::new(window, lengths, table.inverse_symbol(lengths))
+        VectorConvolution::<f32>::new(window, lengths, table.inverse_symbol(lengths, &never).unwrap())
             .apply(&all, &u, &all, &mut back);
         for (q, back) in q.iter().zip(&back) {
             assert!((q - back).abs() < 1e-4, "{q} {back}");

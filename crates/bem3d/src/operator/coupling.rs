@@ -3,7 +3,7 @@
 use super::convolution::Convolution;
 use crate::geometry::{CellSet, Grid};
 use crate::kernel::CouplingTable;
-use contact_model::Boundary;
+use contact_model::{Boundary, Interrupted, Stop};
 use std::sync::Arc;
 
 /// `u_z = beta (J_x q_x + J_y q_y)` and `(u_x, u_y) = -beta (J_x, J_y) p` on a grid in double precision, see
@@ -25,45 +25,67 @@ impl CouplingOperator {
     }
 
     /// Normal displacement on the whole grid under tractions on a set, two numbers a cell.
-    pub fn normal(&mut self, sources: &CellSet, q: &[f64]) -> Vec<f64> {
+    ///
+    /// # Errors
+    /// As [`Convolution::apply_to`].
+    pub fn normal(&mut self, sources: &CellSet, q: &[f64], stop: Stop<'_>) -> Result<Vec<f64>, Interrupted> {
         let targets = CellSet::all(self.table.grid());
         let (x, y) = q.split_at(sources.len());
-        let mut u = self.apply(sources, [None, Some(x), Some(y)], &targets);
+        let mut u = self.apply(sources, [None, Some(x), Some(y)], &targets, stop)?;
         u.truncate(targets.len());
-        u
+        Ok(u)
     }
 
     /// Tangential displacement of cells under pressures on a set, two numbers a cell.
-    pub fn tangential(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet) -> Vec<f64> {
-        self.apply(sources, [Some(p), None, None], targets).split_off(targets.len())
+    ///
+    /// # Errors
+    /// As [`Convolution::apply_to`].
+    pub fn tangential(
+        &mut self,
+        sources: &CellSet,
+        p: &[f64],
+        targets: &CellSet,
+        stop: Stop<'_>,
+    ) -> Result<Vec<f64>, Interrupted> {
+        Ok(self.apply(sources, [Some(p), None, None], targets, stop)?.split_off(targets.len()))
     }
 
     /// The normal displacement and both tangential ones under the given fields `(p, q_x, q_y)`.
     ///
     /// Cost: the transforms of three fields of the grid, except for rows of zeros.
-    fn apply(&mut self, sources: &CellSet, given: [Option<&[f64]>; 3], targets: &CellSet) -> Vec<f64> {
+    fn apply(
+        &mut self,
+        sources: &CellSet,
+        given: [Option<&[f64]>; 3],
+        targets: &CellSet,
+        stop: Stop<'_>,
+    ) -> Result<Vec<f64>, Interrupted> {
         let mut u = vec![0.0; 3 * targets.len()];
         if sources.is_empty() || targets.is_empty() || self.beta.abs() <= 0.0 {
-            return u;
+            return Ok(u);
         }
         self.applications += 1;
         let table = &self.table;
-        let convolution = self.plan.get_or_insert_with(|| {
-            let window = table.grid().window();
-            let lengths = table.exact_lengths(window);
-            Convolution::new(window, lengths, table.symbol_f64(lengths))
-        });
-        convolution.apply_to(sources, given, targets, &mut u);
+        let convolution = match &mut self.plan {
+            Some(plan) => plan,
+            plan => {
+                let window = table.grid().window();
+                let lengths = table.exact_lengths(window);
+                plan.insert(Convolution::new(window, lengths, table.symbol_f64(lengths, stop)?))
+            }
+        };
+        convolution.apply_to(sources, given, targets, &mut u, stop)?;
         for u in &mut u {
             *u *= self.beta;
         }
-        u
+        Ok(u)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use contact_model::never;
 
     #[test]
     fn displacements_are_sums_over_pairs_and_reciprocal() {
@@ -79,8 +101,8 @@ mod tests {
             let (all, n) = (CellSet::all(grid), sources.len());
             let q: Vec<f64> = (0..2 * n).map(|k| (1.1 * k as f64).sin()).collect();
             let p: Vec<f64> = (0..n).map(|k| 1.0 + (0.7 * k as f64).cos()).collect();
-            let normal = operator.normal(&sources, &q);
-            let tangential = operator.tangential(&sources, &p, &all);
+            let normal = operator.normal(&sources, &q, &never).unwrap();
+            let tangential = operator.tangential(&sources, &p, &all, &never).unwrap();
             let places: Vec<(usize, usize)> = sources.places().collect();
             for (i, (x, y)) in all.places().enumerate() {
                 let (mut expected, mut pressed) = (0.0, [0.0; 2]);
@@ -99,7 +121,7 @@ mod tests {
             // displacement of the pressure.
             let on_sources = sources.carry(&all, &normal);
             let work: f64 = on_sources.iter().zip(&p).map(|(u, p)| u * p).sum();
-            let tangential = operator.tangential(&sources, &p, &sources);
+            let tangential = operator.tangential(&sources, &p, &sources, &never).unwrap();
             let other: f64 = tangential.iter().zip(&q).map(|(u, q)| u * q).sum();
             approx::assert_relative_eq!(work, other, max_relative = 1e-11);
         }

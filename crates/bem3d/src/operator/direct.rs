@@ -4,6 +4,7 @@ use super::influence::InfluenceOperator;
 use crate::geometry::CellSet;
 use crate::kernel::{KernelTable, Symmetric, Tensor};
 use crate::real::Real;
+use contact_model::{Interrupted, Stop};
 
 /// The reference implementation of every faster operator, and the fastest one itself for a few hundred cells: the
 /// kernel of a symmetric matrix with N rows and E entries.
@@ -15,12 +16,19 @@ where
     [f64; E]: Symmetric<f64, N>,
 {
     /// `u_i = sum_j K(i - j) t_j`. Cost: O(sources x targets).
-    fn apply(&mut self, sources: &CellSet, t: &[T], targets: &CellSet, u: &mut [T]) {
+    fn apply_until(
+        &mut self,
+        sources: &CellSet,
+        t: &[T],
+        targets: &CellSet,
+        u: &mut [T],
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         // What the rows are made from is made before threads ask for them.
         let _ = self.0.shift();
         let n = sources.len();
         for (i, u) in u.chunks_exact_mut(targets.len().max(1)).enumerate() {
-            targets.update(n * targets.len(), u, |target, u| {
+            targets.update_until(n * targets.len(), u, stop, |target, u| {
                 let u = &mut u[target.span()];
                 u.fill(T::default());
                 for source in sources.rows() {
@@ -42,8 +50,9 @@ where
                         *u += T::of(sum);
                     }
                 }
-            });
+            })?;
         }
+        Ok(())
     }
 }
 

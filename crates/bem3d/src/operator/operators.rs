@@ -11,6 +11,7 @@ use crate::kernel::NormalTable;
 use crate::parts::{Part, Recorder};
 use crate::real::Real;
 use crate::tuning::Tuning;
+use contact_model::{Interrupted, Stop};
 use std::sync::Arc;
 
 /// The operators of pressures on one surface, each planned when it is first used, with work counters.
@@ -42,14 +43,21 @@ where
     FftConvolution<f32>: InfluenceOperator<T>,
     TwoTransforms: InfluenceOperator<T>,
 {
-    fn apply(&mut self, sources: &CellSet, p: &[T], targets: &CellSet, u: &mut [T]) {
+    fn apply_until(
+        &mut self,
+        sources: &CellSet,
+        p: &[T],
+        targets: &CellSet,
+        u: &mut [T],
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         match self {
-            Self::Kernel(kernel) => kernel.apply(sources, p, targets, u),
+            Self::Kernel(kernel) => kernel.apply_until(sources, p, targets, u, stop),
             Self::TwoLevel(two_level, recorder) => {
-                recorder.timed(Part::TwoLevel, || two_level.apply(sources, p, targets, u));
+                recorder.timed(Part::TwoLevel, || two_level.apply_until(sources, p, targets, u, stop))
             }
             Self::TwoTransforms(transforms, recorder) => {
-                recorder.timed(Part::TwoTransforms, || transforms.apply(sources, p, targets, u));
+                recorder.timed(Part::TwoTransforms, || transforms.apply_until(sources, p, targets, u, stop))
             }
         }
     }
@@ -100,8 +108,18 @@ impl Operators {
     }
 
     /// `u = G p` in double precision without approximation, as [`Plans::exact`].
-    pub fn exact(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut Vec<f64>) {
-        self.plans.exact(sources, p, targets, u);
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop; `u` is then undefined.
+    pub fn exact(
+        &mut self,
+        sources: &CellSet,
+        p: &[f64],
+        targets: &CellSet,
+        u: &mut Vec<f64>,
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
+        self.plans.exact(sources, p, targets, u, stop)
     }
 
     /// An upper estimate of the error of [`Self::rough`] over the largest displacement; 0 where sums over
@@ -112,21 +130,38 @@ impl Operators {
     }
 
     /// `u = G p` to four digits or more, for decisions that are checked with [`Self::exact`].
-    pub fn rough(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut Vec<f64>) {
-        let Some(window) = self.plans.begin(sources, targets, u) else { return };
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop; `u` is then undefined.
+    pub fn rough(
+        &mut self,
+        sources: &CellSet,
+        p: &[f64],
+        targets: &CellSet,
+        u: &mut Vec<f64>,
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
+        let Some(window) = self.plans.begin(sources, targets, u) else { return Ok(()) };
         let application = self.planner().fast(sources, targets, window);
-        self.planned(application, window, None).0.apply(sources, p, targets, u);
+        self.planned(application, window, None, stop)?.0.apply_until(sources, p, targets, u, stop)
     }
 
     /// The influence matrix and, where the recipe has one, the transform of its torus inverse.
-    pub fn system(&mut self, recipe: Recipe) -> (PlannedPressure<'_>, Option<&mut FftConvolution<f32>>) {
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop while they are planned.
+    pub fn system(
+        &mut self,
+        recipe: Recipe,
+        stop: Stop<'_>,
+    ) -> Result<(PlannedPressure<'_>, Option<&mut FftConvolution<f32>>), Interrupted> {
         let Recipe { window, application, conditioning } = recipe;
         self.last = Some(recipe);
         let torus = match conditioning {
             Conditioning::Identity => None,
             Conditioning::Torus { lengths, .. } => Some(lengths),
         };
-        self.planned(application, window, torus)
+        self.planned(application, window, torus, stop)
     }
 
     /// Plans an application in single precision and the inverse on a torus of these lengths, or reuses suitable
@@ -136,11 +171,12 @@ impl Operators {
         application: Application,
         window: Window,
         torus: Option<Lengths>,
-    ) -> (PlannedPressure<'_>, Option<&mut FftConvolution<f32>>) {
+        stop: Stop<'_>,
+    ) -> Result<(PlannedPressure<'_>, Option<&mut FftConvolution<f32>>), Interrupted> {
         let Self { plans, two_level, two_transforms, .. } = self;
         let (tuning, recorder) = (*plans.tuning(), plans.recorder().clone());
         let lengths = if let Application::Fft(lengths) = application { Some(lengths) } else { None };
-        let (kernel, inverse) = plans.planned(lengths, window, torus);
+        let (kernel, inverse) = plans.planned(lengths, window, torus, stop)?;
         let planned = match application {
             Application::Direct | Application::Fft(_) => PlannedPressure::Kernel(kernel),
             Application::TwoLevel(split) => {
@@ -148,19 +184,26 @@ impl Operators {
                 if !two_level.as_ref().is_some_and(serves) {
                     *two_level = None;
                 }
-                let make = || recorder.timed(Part::Plans, || TwoLevel::new(window, split));
-                PlannedPressure::TwoLevel(two_level.get_or_insert_with(make), recorder.clone())
+                let plan = match two_level {
+                    Some(plan) => plan,
+                    slot => slot.insert(recorder.timed(Part::Plans, || TwoLevel::new(window, split, stop))?),
+                };
+                PlannedPressure::TwoLevel(plan, recorder.clone())
             }
             Application::TwoTransforms(split) => {
                 let serves = |o: &TwoTransforms| o.split() == split && o.window().serves(window, &tuning);
                 if !two_transforms.as_ref().is_some_and(serves) {
                     *two_transforms = None;
                 }
-                let make = || recorder.timed(Part::Plans, || TwoTransforms::new(window, split));
-                PlannedPressure::TwoTransforms(two_transforms.get_or_insert_with(make), recorder.clone())
+                let make = || TwoTransforms::new(window, split, stop);
+                let plan = match two_transforms {
+                    Some(plan) => plan,
+                    slot => slot.insert(recorder.timed(Part::Plans, make)?),
+                };
+                PlannedPressure::TwoTransforms(plan, recorder.clone())
             }
         };
-        (planned, inverse)
+        Ok((planned, inverse))
     }
 }
 

@@ -10,6 +10,7 @@ use crate::kernel::{Invertible, KernelTable, Symmetric, Tensor};
 use crate::parts::{Part, Recorder};
 use crate::real::Real;
 use crate::tuning::Tuning;
+use contact_model::{Interrupted, Stop};
 use std::fmt;
 use std::sync::Arc;
 
@@ -31,6 +32,10 @@ pub struct Plans<const N: usize, const E: usize> {
 /// The operators of tangential tractions.
 pub type TangentialOperators = Plans<2, 3>;
 
+/// The kernel for a system, and the transform of its inverse on a torus.
+pub type PlannedSystem<'a, const N: usize, const E: usize> =
+    (Planned<'a, N, E>, Option<&'a mut Convolution<f32, N, E>>);
+
 /// The kernel in the form that is cheaper for one set, in single precision, with the recorder of its time.
 #[derive(Debug)]
 pub enum Planned<'a, const N: usize, const E: usize> {
@@ -45,13 +50,20 @@ where
     [f64; E]: Symmetric<f64, N>,
     Convolution<f32, N, E>: InfluenceOperator<T>,
 {
-    fn apply(&mut self, sources: &CellSet, t: &[T], targets: &CellSet, u: &mut [T]) {
+    fn apply_until(
+        &mut self,
+        sources: &CellSet,
+        t: &[T],
+        targets: &CellSet,
+        u: &mut [T],
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         match self {
             Self::Direct(direct, recorder) => {
-                recorder.timed(Part::Direct, || direct.apply(sources, t, targets, u));
+                recorder.timed(Part::Direct, || direct.apply_until(sources, t, targets, u, stop))
             }
             Self::Fft(transform, part, recorder) => {
-                recorder.timed(*part, || transform.apply(sources, t, targets, u));
+                recorder.timed(*part, || transform.apply_until(sources, t, targets, u, stop))
             }
         }
     }
@@ -109,6 +121,11 @@ where
         Costs::new(&self.tuning, N, E)
     }
 
+    /// The time of an application in double precision in a window by the cost model, ns.
+    pub fn nanoseconds(&self, window: Window) -> f64 {
+        self.costs().transforms(self.table.exact_lengths(window))
+    }
+
     /// Resizes `u` to the targets and counts an application. Returns the window of both sets, `None` where the
     /// sources or the targets are empty.
     pub fn begin(&mut self, sources: &CellSet, targets: &CellSet, u: &mut Vec<f64>) -> Option<Window> {
@@ -122,30 +139,44 @@ where
     }
 
     /// `u = K t` in double precision without approximation: direct sums or the FFT, whichever is cheaper.
-    pub fn exact(&mut self, sources: &CellSet, t: &[f64], targets: &CellSet, u: &mut Vec<f64>) {
-        let Some(window) = self.begin(sources, targets, u) else { return };
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop; `u` is then undefined.
+    pub fn exact(
+        &mut self,
+        sources: &CellSet,
+        t: &[f64],
+        targets: &CellSet,
+        u: &mut Vec<f64>,
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
+        let Some(window) = self.begin(sources, targets, u) else { return Ok(()) };
         let lengths = self.table.exact_lengths(window);
         if self.costs().direct(sources.len(), targets.len()) <= self.costs().transforms(lengths) {
-            let direct = || DirectSum(&self.table).apply(sources, t, targets, u);
+            let direct = || DirectSum(&self.table).apply_until(sources, t, targets, u, stop);
             return self.recorder.timed(Part::Direct, direct);
         }
         let table = &self.table;
         let transform = planned(&mut self.double, window, (&self.tuning, &self.recorder), || {
-            Convolution::new(window, lengths, table.symbol_f64(lengths))
-        });
-        self.recorder.timed(Part::Double, || transform.apply(sources, t, targets, u));
+            Ok(Convolution::new(window, lengths, table.symbol_f64(lengths, stop)?))
+        })?;
+        self.recorder.timed(Part::Double, || transform.apply_until(sources, t, targets, u, stop))
     }
 
     /// The kernel on a set in single precision, and the transform of its torus inverse; `None` on no cells.
     ///
     /// `every_lag`: whether the kernel must be exact at every lag, as for a stiffness, or may be that of a shorter
     /// torus, as for corrections that the exact displacement is evaluated after.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop while symbols are made.
     pub fn system(
         &mut self,
         set: &CellSet,
         every_lag: bool,
-    ) -> Option<(Planned<'_, N, E>, &mut Convolution<f32, N, E>)> {
-        let window = set.window()?;
+        stop: Stop<'_>,
+    ) -> Result<Option<(Planned<'_, N, E>, &mut Convolution<f32, N, E>)>, Interrupted> {
+        let Some(window) = set.window() else { return Ok(None) };
         let lengths = if every_lag {
             self.table.exact_lengths(window)
         } else {
@@ -154,32 +185,40 @@ where
         let transforms = self.tuning.single * self.costs().transforms(lengths);
         let direct = self.costs().direct(set.len(), set.len()) <= transforms;
         let torus = self.table.torus_lengths(window);
-        let (kernel, inverse) = self.planned((!direct).then_some(lengths), window, Some(torus));
-        Some((kernel, inverse?))
+        let (kernel, inverse) = self.planned((!direct).then_some(lengths), window, Some(torus), stop)?;
+        Ok(inverse.map(|inverse| (kernel, inverse)))
     }
 
     /// The kernel in single precision by transforms of these lengths, by sums over pairs where there are none;
     /// and the transform of its inverse on a torus, where that has lengths.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop while symbols are made.
     pub fn planned(
         &mut self,
         lengths: Option<Lengths>,
         window: Window,
         torus_lengths: Option<Lengths>,
-    ) -> (Planned<'_, N, E>, Option<&mut Convolution<f32, N, E>>) {
+        stop: Stop<'_>,
+    ) -> Result<PlannedSystem<'_, N, E>, Interrupted> {
         let Self { table, tuning, recorder, single, shortened, torus, .. } = self;
         let inverse = torus_lengths.map(|lengths| {
             planned(torus, window, (tuning, recorder), || {
-                Convolution::new(window, lengths, table.inverse_symbol(lengths))
+                Ok(Convolution::new(window, lengths, table.inverse_symbol(lengths, stop)?))
             })
         });
-        let Some(lengths) = lengths else { return (Planned::Direct(DirectSum(table), recorder), inverse) };
+        let inverse = inverse.transpose()?;
+        let Some(lengths) = lengths else {
+            return Ok((Planned::Direct(DirectSum(table), recorder), inverse));
+        };
         let exact = lengths == table.exact_lengths(window);
         let (slot, part) = if exact { (single, Part::Single) } else { (shortened, Part::Shortened) };
         let transform = planned(slot, window, (tuning, recorder), || {
-            let symbol = if exact { table.symbol_f32(lengths) } else { table.shortened_symbol(lengths) };
-            Convolution::new(window, lengths, symbol)
-        });
-        (Planned::Fft(transform, part, recorder), inverse)
+            let symbol =
+                if exact { table.symbol_f32(lengths, stop) } else { table.shortened_symbol(lengths, stop) };
+            Ok(Convolution::new(window, lengths, symbol?))
+        })?;
+        Ok((Planned::Fft(transform, part, recorder), inverse))
     }
 }
 
@@ -188,13 +227,16 @@ fn planned<'a, T: Real, const N: usize, const E: usize>(
     slot: &'a mut Option<Convolution<T, N, E>>,
     window: Window,
     (tuning, recorder): (&Tuning, &Recorder),
-    make: impl FnOnce() -> Convolution<T, N, E>,
-) -> &'a mut Convolution<T, N, E>
+    make: impl FnOnce() -> Result<Convolution<T, N, E>, Interrupted>,
+) -> Result<&'a mut Convolution<T, N, E>, Interrupted>
 where
     [T; E]: Tensor<T, N>,
 {
     if !slot.as_ref().is_some_and(|c| c.window().serves(window, tuning)) {
         *slot = None;
     }
-    slot.get_or_insert_with(|| recorder.timed(Part::Plans, make))
+    match slot {
+        Some(plan) => Ok(plan),
+        slot => Ok(slot.insert(recorder.timed(Part::Plans, make)?)),
+    }
 }

@@ -7,8 +7,10 @@
 
 use crate::geometry::{Lengths, Window};
 use crate::real::Real;
+use crate::tasks::for_each;
 use crate::tuning::{BAND, CACHE_LINE, SQUARE, STRIPE_BYTES, WAVES};
-use numerics::parallel::{for_each, threads_for, widest};
+use contact_model::{Interrupted, Stop};
+use numerics::parallel::{threads_for, widest};
 use rustfft::Fft;
 use rustfft::num_complex::Complex;
 use std::fmt;
@@ -138,7 +140,15 @@ impl<T: Real, const N: usize> Transform<T, N> {
     }
 
     /// Transforms the rows of the fields: `fill` writes row y, which is zero before, for all y with `given`.
-    pub fn forward(&mut self, given: impl Fn(usize) -> bool + Sync, fill: impl Fn(usize, &mut [T]) + Sync) {
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop, which is asked between bands of rows.
+    pub fn forward(
+        &mut self,
+        given: impl Fn(usize) -> bool + Sync,
+        fill: impl Fn(usize, &mut [T]) + Sync,
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         self.make_buffers();
         let Self { window: Window { width, .. }, field, row_forward, buffers, .. } = self;
         let (width, height) = (*width, N * *field);
@@ -153,7 +163,7 @@ impl<T: Real, const N: usize> Transform<T, N> {
         }
         let known = &self.given;
         let bands: Vec<_> = bands.into_iter().enumerate().filter(|(band, _)| known[*band]).collect();
-        for_each(buffers, bands.into_iter(), |buffer, (band, mut pieces)| {
+        for_each(buffers, bands.into_iter(), stop, |buffer, (band, mut pieces)| {
             let Buffers { rows, pair, spectrum, scratch, .. } = buffer;
             let first = band * BAND;
             let mut numbers = Vec::with_capacity(BAND);
@@ -179,18 +189,22 @@ impl<T: Real, const N: usize> Transform<T, N> {
                 let at = |i: usize| Some((numbers.get(i)? - first) * Self::STRIPE);
                 take_apart(spectrum, &mut pieces, Self::STRIPE, [at(0), at(1)]);
             }
-        });
+        })
     }
 
     /// Changes the spectra: a transform of each column forward and back, between them `act` on the columns of
     /// all fields at wave kx. Only the bands of rows in `wanted` are valid afterwards.
     ///
     /// Cost: O(N lx ly log) with [`Self::forward`] and [`Self::backward`]; rows of zeros are not transformed.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop, which is asked between stripes of columns.
     pub fn change(
         &mut self,
         wanted: impl Fn(usize) -> bool,
         act: impl Fn(usize, [&mut [Complex<T>]; N]) + Sync,
-    ) {
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         let Self { height, field, lengths, column_forward, column_inverse, buffers, .. } = self;
         let (height, field) = (*height, *field);
         let bands = self.given.len() / N;
@@ -204,7 +218,7 @@ impl<T: Real, const N: usize> Transform<T, N> {
         let targets: [_; N] = std::array::from_fn(|i| rows(i, &any));
         let (pitch, waves) = (Self::pitch(lengths.y), lengths.x / 2 + 1);
         let stripes = self.spectrum[self.start..].chunks_exact_mut(Self::STRIPE * N * field);
-        for_each(buffers, stripes.enumerate(), |buffer, (number, stripe)| {
+        for_each(buffers, stripes.enumerate(), stop, |buffer, (number, stripe)| {
             let Buffers { columns, scratch, .. } = buffer;
             let each = Self::TOGETHER * pitch;
             for first in (0..Self::STRIPE).step_by(Self::TOGETHER) {
@@ -242,21 +256,25 @@ impl<T: Real, const N: usize> Transform<T, N> {
                     }
                 }
             }
-        });
+        })
     }
 
     /// Transforms rows back: `take` reads row y where it is `wanted`, and may write over it. Each band of rows
     /// has its own output, of those given in order.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop, which is asked between bands of rows.
     pub fn backward<O: Send>(
         &mut self,
         wanted: impl Fn(usize) -> bool + Sync,
         outputs: impl ExactSizeIterator<Item = O> + Send,
         take: impl Fn(&mut O, usize, &mut [T]) + Sync,
-    ) {
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         let Self { window: Window { width, .. }, field, row_inverse, buffers, .. } = self;
         let (width, height) = (*width, N * *field);
         let stripes: Vec<_> = self.spectrum[self.start..].chunks_exact(Self::STRIPE * height).collect();
-        for_each(buffers, outputs.enumerate(), |buffer, (band, mut output)| {
+        for_each(buffers, outputs.enumerate(), stop, |buffer, (band, mut output)| {
             let Buffers { rows, pair, spectrum, scratch, .. } = buffer;
             let mut numbers = (band * BAND..((band + 1) * BAND).min(height)).filter(|&y| wanted(y));
             while let Some(y) = numbers.next() {
@@ -272,7 +290,7 @@ impl<T: Real, const N: usize> Transform<T, N> {
                     take(&mut output, numbers[1], b);
                 }
             }
-        });
+        })
     }
 }
 

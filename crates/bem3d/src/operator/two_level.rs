@@ -14,7 +14,8 @@ use crate::geometry::{CellSet, Lengths, Window};
 use crate::kernel::Symbol;
 use crate::kernel::love::influence;
 use crate::real::Real;
-use numerics::parallel::map;
+use crate::tasks::each;
+use contact_model::{Interrupted, Stop};
 use std::fmt;
 
 /// Spacing, reach and order of a two-level operator.
@@ -61,10 +62,13 @@ impl Split {
     }
 
     /// Symbol of the smooth kernel between the nodes of a lattice.
-    pub fn far_symbol(self, lattice: Window) -> Symbol {
+    ///
+    /// # Errors
+    /// As [`Symbol::with_parity_until`].
+    pub fn far_symbol(self, lattice: Window, stop: Stop<'_>) -> Result<Symbol, Interrupted> {
         let (spacing, radius) = (self.spacing as f64, self.radius() as f64);
         let far = |x: usize, y: usize| smooth(distance(x, y) * spacing, radius);
-        Symbol::of_kernel(Lengths::free(lattice), far)
+        Symbol::of_kernel_until(Lengths::free(lattice), far, stop)
     }
 
     /// The near part of the kernel at a lag, `I - S`: 0 from the radius on.
@@ -97,13 +101,16 @@ impl fmt::Debug for TwoLevel {
 
 impl TwoLevel {
     /// Plans for a window: the near table and the symbol of the smooth kernel on the lattice.
-    pub fn new(window: Window, split: Split) -> Self {
+    ///
+    /// # Errors
+    /// As [`Symbol::with_parity_until`].
+    pub fn new(window: Window, split: Split, stop: Stop<'_>) -> Result<Self, Interrupted> {
         let box_of_nodes = split.lattice(window);
         let local = Window { x: 0, y: 0, ..box_of_nodes };
-        let symbol = split.far_symbol(local);
+        let symbol = split.far_symbol(local, stop)?;
         let nodes = CellSet::from_rows((0..local.height).map(|y| (y, 0..local.width as u32)));
         let radius = split.radius();
-        Self {
+        Ok(Self {
             window,
             split,
             lattice: box_of_nodes,
@@ -113,7 +120,7 @@ impl TwoLevel {
             potential: vec![0.0; nodes.len()],
             far: FftConvolution::new(local, symbol.lengths, symbol.scaled()),
             nodes,
-        }
+        })
     }
 
     /// The window.
@@ -133,11 +140,11 @@ impl TwoLevel {
 
     /// Pressure to the nodes: the transpose of [`Self::interpolate`]. A row of nodes gathers from the rows of
     /// cells around it.
-    fn restrict<T: Real>(&mut self, sources: &CellSet, p: &[T]) {
+    fn restrict<T: Real>(&mut self, sources: &CellSet, p: &[T], stop: Stop<'_>) -> Result<(), Interrupted> {
         let mut charge = std::mem::take(&mut self.charge);
         let (Split { spacing, order, .. }, lattice) = (self.split, self.lattice);
         let rows = charge.chunks_mut(lattice.width).enumerate();
-        map(sources.len() * order * order, rows, |(ny, line)| {
+        let restricted = each(sources.len() * order * order, rows, stop, |(ny, line)| {
             line.fill(0.0);
             let last = ny + lattice.y;
             let cells = (last + 1).saturating_sub(order) * spacing..(last + 1) * spacing;
@@ -154,6 +161,7 @@ impl TwoLevel {
             }
         });
         self.charge = charge;
+        restricted
     }
 
     fn interpolate<T: Real>(&self, targets: &CellSet, u: &mut [T]) {
@@ -172,11 +180,18 @@ impl TwoLevel {
         });
     }
 
-    fn add_near<T: Real>(&self, sources: &CellSet, p: &[T], targets: &CellSet, u: &mut [T]) {
+    fn add_near<T: Real>(
+        &self,
+        sources: &CellSet,
+        p: &[T],
+        targets: &CellSet,
+        u: &mut [T],
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         let radius = self.split.radius();
         // Contact comes in clusters: most cells have others all around.
         let work = targets.len() * sources.len().min(radius * radius);
-        targets.update(work, u, |target, u| {
+        targets.update_until(work, u, stop, |target, u| {
             for source in sources.rows_within((target.y + 1).saturating_sub(radius)..target.y + radius) {
                 let line = &self.near[source.y.abs_diff(target.y) * radius..][..radius];
                 let (columns, p) = (source.columns, &p[source.span()]);
@@ -193,7 +208,7 @@ impl TwoLevel {
                     *u += T::of(sum);
                 }
             }
-        });
+        })
     }
 }
 
@@ -201,11 +216,18 @@ impl<T: Real> InfluenceOperator<T> for TwoLevel {
     /// The result is exact up to the error of the interpolation. Both sets have to lie inside the window.
     ///
     /// Cost: order^2 for each cell, one for each close pair, and the transform of the lattice.
-    fn apply(&mut self, sources: &CellSet, p: &[T], targets: &CellSet, u: &mut [T]) {
-        self.restrict(sources, p);
-        self.far.apply(&self.nodes, &self.charge, &self.nodes, &mut self.potential);
+    fn apply_until(
+        &mut self,
+        sources: &CellSet,
+        p: &[T],
+        targets: &CellSet,
+        u: &mut [T],
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
+        self.restrict(sources, p, stop)?;
+        self.far.apply_until(&self.nodes, &self.charge, &self.nodes, &mut self.potential, stop)?;
         self.interpolate(targets, u);
-        self.add_near(sources, p, targets, u);
+        self.add_near(sources, p, targets, u, stop)
     }
 }
 
@@ -256,6 +278,7 @@ mod tests {
     use crate::operator::DirectSum;
     use approx::assert_relative_eq;
     use contact_model::Boundary;
+    use contact_model::never;
 
     const SIDE: usize = 200;
     const GRID: Grid = Grid { columns: SIDE, rows: SIDE, stretch: 1.0 };
@@ -281,7 +304,7 @@ mod tests {
         let set = scattered();
         let p: Vec<f64> = (0..set.len()).map(|k| 1.0 + (k as f64).sin()).collect();
         let (exact, mut fast) = (exactly(&set, &p), vec![0.0; set.len()]);
-        TwoLevel::new(set.window().unwrap(), split).apply(&set, &p, &set, &mut fast);
+        TwoLevel::new(set.window().unwrap(), split, &never).unwrap().apply(&set, &p, &set, &mut fast);
         let scale = exact.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
         exact.iter().zip(&fast).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / scale
     }
@@ -339,7 +362,7 @@ mod tests {
         for by in [0, 5, 60] {
             let (set, p) = moved(by);
             let (exact, mut fast) = (exactly(&set, &p), vec![0.0; p.len()]);
-            let mut operator = TwoLevel::new(set.window().unwrap(), split);
+            let mut operator = TwoLevel::new(set.window().unwrap(), split, &never).unwrap();
             operator.apply(&set, &p, &set, &mut fast);
             for (a, b) in exact.iter().zip(&fast) {
                 assert_relative_eq!(a, b, max_relative = 1e-3);

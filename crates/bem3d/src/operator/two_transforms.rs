@@ -12,13 +12,18 @@ use super::influence::InfluenceOperator;
 use super::two_level::Split;
 use crate::geometry::{CellSet, Window};
 use crate::kernel::Symbol;
+use crate::tasks::each;
 use crate::tuning::{BAND, LANES};
-use numerics::parallel::{map, widest};
+use contact_model::{Interrupted, Stop};
+use numerics::parallel::widest;
 use std::fmt;
 
 /// Spacing of the lattice in cells: half of it would make the lattice's transform as large as the window's,
 /// twice as much is less accurate at the same radius.
 const SPACING: usize = 4;
+
+/// The targets of a band of rows, with room for a line of nodes and one of cells.
+type NearBand<'u> = ((usize, &'u mut [f32]), Vec<f32>, Vec<f32>);
 
 /// A planned operator for sets inside one window.
 pub struct TwoTransforms {
@@ -51,13 +56,16 @@ impl TwoTransforms {
     /// Plans for a window with a split of [`Self::split_at`].
     ///
     /// Memory: about two thirds of a transform of the whole kernel.
-    pub fn new(window: Window, split: Split) -> Self {
-        let near = Symbol::of_kernel(split.near_lengths(window), |x, y| split.near(x, y));
+    ///
+    /// # Errors
+    /// As [`Symbol::with_parity_until`].
+    pub fn new(window: Window, split: Split, stop: Stop<'_>) -> Result<Self, Interrupted> {
+        let near = Symbol::of_kernel_until(split.near_lengths(window), |x, y| split.near(x, y), stop)?;
         let lattice = split.lattice(window);
         let local = Window { x: 0, y: 0, ..lattice };
-        let far = split.far_symbol(local);
+        let far = split.far_symbol(local, stop)?;
         let interpolation = Interpolation::new(split, lattice.width);
-        Self {
+        Ok(Self {
             window,
             split,
             lattice,
@@ -67,7 +75,7 @@ impl TwoTransforms {
             potential: vec![0.0; lattice.height * interpolation.nodes],
             interpolation,
             rounded: Rounded::default(),
-        }
+        })
     }
 
     /// The window.
@@ -81,11 +89,11 @@ impl TwoTransforms {
     }
 
     /// The pressure of each row of cells on the columns of nodes.
-    fn restrict(&mut self, sources: &CellSet, p: &[f32]) {
+    fn restrict(&mut self, sources: &CellSet, p: &[f32], stop: Stop<'_>) -> Result<(), Interrupted> {
         let Self { window, lattice, interpolation, rows, .. } = self;
         let (nodes, x0) = (interpolation.nodes, lattice.x * SPACING);
         let bands = rows.chunks_mut(BAND * nodes).enumerate();
-        map(window.count(), bands, |(band, lines)| {
+        each(window.count(), bands, stop, |(band, lines)| {
             let first = window.y + band * BAND;
             let mut cells = interpolation.cells();
             let mut phases = interpolation.phases();
@@ -96,11 +104,11 @@ impl TwoTransforms {
                 interpolation.restrict(&cells, &mut phases, line);
                 row.fill(0.0, &mut cells, x0);
             }
-        });
+        })
     }
 
     /// The far field on the nodes.
-    fn convolve_far(&mut self) {
+    fn convolve_far(&mut self, stop: Stop<'_>) -> Result<(), Interrupted> {
         let Self { window, split, lattice, interpolation, far, rows, potential, .. } = self;
         let order = split.order;
         let (nodes, blocks) = (interpolation.nodes, lattice.height + 1 - order);
@@ -124,18 +132,27 @@ impl TwoTransforms {
                     },
                 );
             },
-        );
-        far.multiply(|_| true);
+            stop,
+        )?;
+        far.multiply(|_| true, stop)?;
         let outputs = potential.chunks_mut(BAND * nodes);
         far.backward(
             |_| true,
             outputs,
             |output, _, y, row| output[y % BAND * nodes..][..row.len()].copy_from_slice(row),
-        );
+            stop,
+        )
     }
 
     /// The near field, to which the far field is added.
-    fn convolve_near(&mut self, sources: &CellSet, p: &[f32], targets: &CellSet, u: &mut [f32]) {
+    fn convolve_near(
+        &mut self,
+        sources: &CellSet,
+        p: &[f32],
+        targets: &CellSet,
+        u: &mut [f32],
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         let Self { window, lattice, interpolation, near, potential, .. } = self;
         let Window { x: x0, y: y0, width, .. } = *window;
         let (nodes, begin) = (interpolation.nodes, x0 - lattice.x * SPACING);
@@ -147,11 +164,12 @@ impl TwoTransforms {
                     row.spread(p, line, x0);
                 }
             },
-        );
-        near.multiply(held);
+            stop,
+        )?;
+        near.multiply(held, stop)?;
         let outputs = targets.split(u, near.bands().map(|y| y + y0)).into_iter();
         let outputs = outputs.map(|output| (output, vec![0.0; nodes], interpolation.cells()));
-        near.backward(held, outputs, |((start, u), between, cells), _, y, line| {
+        let take = |((start, u), between, cells): &mut NearBand<'_>, _: usize, y: usize, line: &mut [f32]| {
             let Some(row) = targets.row(y + y0) else { return };
             let block = row.y / SPACING - lattice.y;
             let weights = &interpolation.weights[row.y % SPACING];
@@ -170,7 +188,8 @@ impl TwoTransforms {
                 },
             );
             row.after(*start).collect(&cells[begin..begin + width], u, x0);
-        });
+        };
+        near.backward(held, outputs, take, stop)
     }
 }
 
@@ -179,19 +198,34 @@ impl InfluenceOperator<f32> for TwoTransforms {
     ///
     /// Cost: a transform of little more than the window and one of the lattice, and `2 order (1 + 1 /
     /// spacing)` multiplications for each cell of the window.
-    fn apply(&mut self, sources: &CellSet, p: &[f32], targets: &CellSet, u: &mut [f32]) {
-        self.restrict(sources, p);
-        self.convolve_far();
-        self.convolve_near(sources, p, targets, u);
+    fn apply_until(
+        &mut self,
+        sources: &CellSet,
+        p: &[f32],
+        targets: &CellSet,
+        u: &mut [f32],
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
+        self.restrict(sources, p, stop)?;
+        self.convolve_far(stop)?;
+        self.convolve_near(sources, p, targets, u, stop)
     }
 }
 
 /// Double-precision vectors in single precision.
 impl InfluenceOperator<f64> for TwoTransforms {
-    fn apply(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet, u: &mut [f64]) {
+    fn apply_until(
+        &mut self,
+        sources: &CellSet,
+        p: &[f64],
+        targets: &CellSet,
+        u: &mut [f64],
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         let mut rounded = std::mem::take(&mut self.rounded);
-        rounded.apply(p, u, |p, u| self.apply(sources, p, targets, u));
+        let done = rounded.apply(p, u, |p, u| self.apply_until(sources, p, targets, u, stop));
         self.rounded = rounded;
+        done
     }
 }
 
@@ -300,6 +334,7 @@ mod tests {
     use crate::kernel::NormalTable;
     use crate::operator::DirectSum;
     use contact_model::Boundary;
+    use contact_model::never;
 
     /// Largest error over the largest displacement on cells of a grid, against the whole kernel in double
     /// precision.
@@ -308,8 +343,9 @@ mod tests {
         let (window, targets) = (grid.window(), CellSet::all(grid));
         let lengths = Lengths::free(window);
         let (mut exact, mut fast) = (vec![0.0; grid.count()], vec![0.0; grid.count()]);
-        FftConvolution::new(window, lengths, table.symbol_f64(lengths)).apply(set, p, &targets, &mut exact);
-        TwoTransforms::new(window, split).apply(set, p, &targets, &mut fast);
+        FftConvolution::new(window, lengths, table.symbol_f64(lengths, &never).unwrap())
+            .apply(set, p, &targets, &mut exact);
+        TwoTransforms::new(window, split, &never).unwrap().apply(set, p, &targets, &mut fast);
         let largest = exact.iter().fold(0.0, |m: f64, u| m.max(u.abs()));
         exact.iter().zip(&fast).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / largest
     }
@@ -351,7 +387,7 @@ mod tests {
             let table = NormalTable::shared(grid, Boundary::Free);
             let (mut exact, mut fast) = (vec![0.0; targets.len()], vec![1.0; targets.len()]);
             DirectSum(&table).apply(&sources, &p, &targets, &mut exact);
-            let mut operator = TwoTransforms::new(window, TwoTransforms::split_at(12, 6));
+            let mut operator = TwoTransforms::new(window, TwoTransforms::split_at(12, 6), &never).unwrap();
             for _ in 0..2 {
                 operator.apply(&sources, &p, &targets, &mut fast);
                 let largest = exact.iter().fold(0.0, |m: f64, u| m.max(u.abs()));

@@ -26,7 +26,7 @@ use crate::adhesion::{AdhesiveControl, Attraction, Equilibrium, LawShape, Pairs}
 use crate::geometry::CellSet;
 use crate::linear::{Fixed, StoppingCriteria};
 use crate::real::{dot, each, largest, sum, update};
-use contact_model::Stop;
+use contact_model::{Interrupted, Stop};
 use numerics::root::bisect;
 
 /// Slopes below this share of the largest one are left out: what they change is below the rounding of the
@@ -122,26 +122,27 @@ impl<'a> LinearisedAdhesion<'a> {
 
 impl LinearisedAdhesion<'_> {
     /// `G_CC^-1 r`, in place; returns the energy of r.
-    fn contact_solve(&mut self, r: &mut [f64]) -> f64 {
+    fn contact_solve(&mut self, r: &mut [f64]) -> Result<f64, Interrupted> {
         let Problem { operators, workspace, .. } = &mut *self.problem;
         let Some(recipe) = operators.planner().system(&self.contact, self.contact.len(), true) else {
-            return 0.0;
+            return Ok(0.0);
         };
+        let stop = self.request.stop;
         workspace.begin_load();
-        workspace.take(operators, self.contact.clone(), recipe);
+        workspace.take(operators, self.contact.clone(), recipe, stop)?;
         let criteria = StoppingCriteria { reduction: INNER, energy: None, floor: 0.0, steps: INNER_STEPS };
         let fixed = if self.constant > 0.0 { Fixed::MeanPlane(self.constant) } else { Fixed::Approach };
-        let outcome = workspace.solve(operators, r, fixed, criteria, self.request.stop);
+        let outcome = workspace.solve(operators, r, fixed, criteria, stop)?;
         self.steps += outcome.steps;
-        outcome.energy
+        Ok(outcome.energy)
     }
 
     /// `G p` in single precision, from the cells of one set to those of another.
-    fn rough(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet) -> Vec<f64> {
+    fn rough(&mut self, sources: &CellSet, p: &[f64], targets: &CellSet) -> Result<Vec<f64>, Interrupted> {
         let mut u = Vec::new();
-        self.problem.operators.rough(sources, p, targets, &mut u);
+        self.problem.operators.rough(sources, p, targets, &mut u, self.request.stop)?;
         self.without_constant(p, &mut u);
-        u
+        Ok(u)
     }
 
     fn without_constant(&self, p: &[f64], u: &mut [f64]) {
@@ -150,15 +151,15 @@ impl LinearisedAdhesion<'_> {
     }
 
     /// `G^ y`.
-    fn apply(&mut self, y: &[f64]) -> Vec<f64> {
+    fn apply(&mut self, y: &[f64]) -> Result<Vec<f64>, Interrupted> {
         let (contact, open, both) = (self.contact.clone(), self.open.clone(), self.both.clone());
-        let u = self.rough(&open, y, &both);
+        let u = self.rough(&open, y, &both)?;
         let mut x = contact.carry(&both, &u);
         let mut displacement = open.carry(&both, &u);
-        self.contact_solve(&mut x);
-        let through = self.rough(&contact, &x, &open);
+        self.contact_solve(&mut x)?;
+        let through = self.rough(&contact, &x, &open)?;
         update(&mut displacement, &through, |u, through| *u -= through);
-        displacement
+        Ok(displacement)
     }
 
     /// `K g`.
@@ -172,12 +173,12 @@ impl LinearisedAdhesion<'_> {
 
     /// Solves `(1 - K G^) y = K b` until the energy of the residual is below `wanted` or, without it, until the
     /// smallest eigenvalue has settled. `held` is the stiffness of the contact alone where the force is fixed.
-    fn reduce(&mut self, b: &[f64], wanted: Option<f64>, held: Option<f64>) -> Reduced {
+    fn reduce(&mut self, b: &[f64], wanted: Option<f64>, held: Option<f64>) -> Result<Reduced, Interrupted> {
         let follows = |y: &[f64]| held.map_or(0.0, |held| dot(b, y) / held);
         let apply = |linearised: &mut Self, y: &[f64]| {
-            let (mut u, share) = (linearised.apply(y), follows(y));
+            let (mut u, share) = (linearised.apply(y)?, follows(y));
             update(&mut u, b, |u, b| *u += share * b);
-            u
+            Ok(u)
         };
         let own = self.problem.operators.table().own();
         let mut r = self.answer(b);
@@ -185,7 +186,7 @@ impl LinearisedAdhesion<'_> {
         let (mut displacement, mut approach) = (vec![0.0; b.len()], 0.0);
         let mut smallest = 1.0;
         // The displacements under r and t.
-        let mut ur = if largest(&r) > 0.0 { apply(self, &r) } else { r.clone() };
+        let mut ur = if largest(&r) > 0.0 { apply(self, &r)? } else { r.clone() };
         let mut ut = ur.clone();
         let mut rr = dot(&r, &ur);
         let start = rr;
@@ -193,7 +194,7 @@ impl LinearisedAdhesion<'_> {
         let mut last: (f64, f64) = (0.0, 0.0);
         let (mut before, mut settled) = (f64::INFINITY, 0);
         for _ in 0..STEPS {
-            if rr.is_nan() || rr <= 0.0 || self.request.stop.stops() {
+            if rr.is_nan() || rr <= 0.0 {
                 break;
             }
             let mut mt = self.answer(&ut);
@@ -214,7 +215,7 @@ impl LinearisedAdhesion<'_> {
             if settled > 1 && wanted.is_none() {
                 break;
             }
-            ur = apply(self, &r);
+            ur = apply(self, &r)?;
             let next = dot(&r, &ur);
             let beta = next / rr;
             let done = settled > 1 && wanted.is_none_or(|wanted| next / smallest <= wanted);
@@ -230,7 +231,7 @@ impl LinearisedAdhesion<'_> {
             rr = next;
         }
         update(&mut displacement, b, |u, b| *u = (*u - approach * b) / (1.0 + approach));
-        Reduced { displacement, smallest }
+        Ok(Reduced { displacement, smallest })
     }
 }
 
@@ -247,13 +248,16 @@ pub struct ResponseRequest<'a> {
 
 /// The response of a state.
 ///
+/// # Errors
+/// [`Interrupted`] by the stop.
+///
 /// Cost: some ten steps, each one solve on the contact and two applications of G.
 pub fn respond(
     problem: &mut Problem,
     attraction: &Attraction,
     state: &Equilibrium,
     request: ResponseRequest<'_>,
-) -> Response {
+) -> Result<Response, Interrupted> {
     let law = attraction.law;
     // Cells that flow do not follow.
     let contact = state.contact();
@@ -263,10 +267,10 @@ pub fn respond(
     let is_full = shift > 0.0 && contact.len() == problem.grid().count();
     // A stopped search has no stability: nothing that is unstable was found.
     if is_full || request.stop.stops() {
-        return Response { stability: 1.0, ..Response::default() };
+        return Ok(Response { stability: 1.0, ..Response::default() });
     }
     let mut linearised = LinearisedAdhesion::new(problem, attraction, state, contact, request);
-    let stiffness = linearised.stiffness();
+    let stiffness = linearised.stiffness()?;
     let (stability, steps) = (linearised.stability.unwrap_or(1.0), linearised.steps);
     let stiffness = match request.control {
         AdhesiveControl::Force(_) => stiffness.map(|k| of_zero_mean(k, shift)),
@@ -279,11 +283,14 @@ pub fn respond(
             .map(|(_, g)| (g / law.range - 1.0).abs())
             .fold(1.0, f64::min);
     }
-    response
+    Ok(response)
 }
 
 /// The stiffness at a fixed contact area: that of the closed cells and, with a short range, of the cells that
 /// hold more than half of their work. `None` where the contact area is the whole of a periodic surface.
+///
+/// # Errors
+/// [`Interrupted`] by the stop.
 ///
 /// Cost: one or two solves on the contact.
 pub fn fixed_area(
@@ -292,32 +299,32 @@ pub fn fixed_area(
     state: &Equilibrium,
     tolerance: f64,
     stop: Stop<'_>,
-) -> Option<NormalStiffness> {
+) -> Result<Option<NormalStiffness>, Interrupted> {
     let area = attraction.held(&state.cells, &state.gap).unwrap_or_else(|| state.contact());
     let is_periodic = problem.operators.table().shift() > 0.0;
     if stop.stops() || (is_periodic && area.len() == problem.grid().count()) {
-        return None;
+        return Ok(None);
     }
     if area.is_empty() {
-        return Some(NormalStiffness::nothing());
+        return Ok(Some(NormalStiffness::nothing()));
     }
-    let found = of_held_cells(problem, &area, tolerance, stop);
-    found.solve_error.is_finite().then_some(found)
+    let found = of_held_cells(problem, &area, tolerance, stop)?;
+    Ok(found.solve_error.is_finite().then_some(found))
 }
 
 impl LinearisedAdhesion<'_> {
     /// The stiffness where it is wanted, and the stability.
-    fn stiffness(&mut self) -> Option<NormalStiffness> {
+    fn stiffness(&mut self) -> Result<Option<NormalStiffness>, Interrupted> {
         if self.both.is_empty() {
             // No cell is within reach: there is no response.
-            return Some(NormalStiffness::nothing());
+            return Ok(Some(NormalStiffness::nothing()));
         }
         let tuning = *self.problem.operators.tuning();
         let stop = self.request.stop;
-        let found = refine(self, None, self.request.tolerance.unwrap_or(1.0), &tuning, stop);
+        let found = refine(self, None, self.request.tolerance.unwrap_or(1.0), &tuning, stop)?;
         // No later solve begins with the pressures, which are as large as the state.
         let found = NormalStiffness { change: [Vec::new()], ..found };
-        found.solve_error.is_finite().then_some(found)
+        Ok(found.solve_error.is_finite().then_some(found))
     }
 }
 
@@ -336,26 +343,35 @@ impl Conditions<1, 1> for LinearisedAdhesion<'_> {
         [sum(&x[..self.both.len()])]
     }
 
-    fn residual(&mut self, [x]: &[Vec<f64>; 1], _: bool, [r]: &mut [Vec<f64>; 1]) -> bool {
+    fn residual(
+        &mut self,
+        [x]: &[Vec<f64>; 1],
+        _: bool,
+        [r]: &mut [Vec<f64>; 1],
+    ) -> Result<bool, Interrupted> {
         let (x, opening) = x.split_at(self.both.len());
         let mut left = Vec::new();
-        self.problem.operators.exact(&self.both, x, &self.both, &mut left);
+        self.problem.operators.exact(&self.both, x, &self.both, &mut left, self.request.stop)?;
         self.without_constant(x, &mut left);
         self.both.add_carried(&self.open, opening, &mut left);
         each(&mut left, |r| *r = 1.0 - *r);
         r[..left.len()].copy_from_slice(&left);
         r[left.len()..].fill(0.0);
-        true
+        Ok(true)
     }
 
-    fn correct(&mut self, [r]: &mut [Vec<f64>; 1], goal: Goal<1>) -> Option<StiffnessCorrection<1>> {
+    fn correct(
+        &mut self,
+        [r]: &mut [Vec<f64>; 1],
+        goal: Goal<1>,
+    ) -> Result<Option<StiffnessCorrection<1>>, Interrupted> {
         let before = self.steps;
         let (contact, open) = (self.contact.clone(), self.open.clone());
         let (r, opening) = r.split_at_mut(self.both.len());
         // Eliminates the contact.
         let mut on_contact = contact.carry(&self.both, r);
-        let energy = self.contact_solve(&mut on_contact);
-        let through = self.rough(&contact, &on_contact, &open);
+        let energy = self.contact_solve(&mut on_contact)?;
+        let through = self.rough(&contact, &on_contact, &open)?;
         let mut b = open.carry(&self.both, r);
         update(&mut b, &through, |b, through| *b -= through);
         // Of the quadratic form of what is left of the open cells, from above.
@@ -363,7 +379,7 @@ impl Conditions<1, 1> for LinearisedAdhesion<'_> {
         let left = dot(&magnitudes, &self.answer(&magnitudes));
         let energy = [energy.abs() + left / self.stability.unwrap_or(1.0).max(f64::MIN_POSITIVE)];
         if goal.only_energy || energy[0] < goal.enough * goal.bases[0].abs() {
-            return Some(StiffnessCorrection { energy, steps: None });
+            return Ok(Some(StiffnessCorrection { energy, steps: None }));
         }
         // The open cells.
         let first = self.stability.is_none();
@@ -372,26 +388,26 @@ impl Conditions<1, 1> for LinearisedAdhesion<'_> {
             _ => None,
         };
         let scale = sum(&on_contact).abs().max(left);
-        let found = self.reduce(&b, self.request.tolerance.map(|t| 1e-2 * t * scale), held);
+        let found = self.reduce(&b, self.request.tolerance.map(|t| 1e-2 * t * scale), held)?;
         // Ritz values lie above the eigenvalue.
         self.stability = Some(self.stability.map_or(found.smallest, |known| known.min(found.smallest)));
-        if self.request.tolerance.is_none() || (first && found.smallest <= 0.0) || self.request.stop.stops() {
-            return None;
+        if self.request.tolerance.is_none() || (first && found.smallest <= 0.0) {
+            return Ok(None);
         }
         let mut opened = b;
         update(&mut opened, &found.displacement, |opened, u| *opened += u);
         let mut on_open = self.answer(&opened);
         each(&mut on_open, |x| *x = -*x);
         // Back to the contact.
-        let u = self.rough(&open, &on_open, &contact);
+        let u = self.rough(&open, &on_open, &contact)?;
         let mut on_contact = contact.carry(&self.both, r);
         on_contact.iter_mut().zip(&u).for_each(|(x, u)| *x -= u);
-        self.contact_solve(&mut on_contact);
+        self.contact_solve(&mut on_contact)?;
         r.fill(0.0);
         self.both.add_carried(&contact, &on_contact, r);
         self.both.add_carried(&open, &on_open, r);
         opening.copy_from_slice(&opened);
-        Some(StiffnessCorrection { energy, steps: Some(self.steps - before) })
+        Ok(Some(StiffnessCorrection { energy, steps: Some(self.steps - before) }))
     }
 
     fn set_error(&self, _: &[Vec<f64>; 1]) -> f64 {

@@ -30,7 +30,7 @@ pub mod tangential;
 use crate::friction::inverse_of;
 use crate::real::{dot, update};
 use crate::tuning::Tuning;
-use contact_model::Stop;
+use contact_model::{Interrupted, Stop};
 
 /// A stiffness, nondimensional, with the error estimates that it has by its solve and by its state: a
 /// symmetric matrix of N rows by its E entries.
@@ -96,11 +96,26 @@ pub trait Conditions<const N: usize, const E: usize> {
     fn forces(&self, x: &[f64]) -> [f64; N];
 
     /// Writes `R = B - A X` and returns whether it is in double precision, which that of a `guess` need not be.
-    fn residual(&mut self, x: &[Vec<f64>; N], is_guess: bool, r: &mut [Vec<f64>; N]) -> bool;
+    ///
+    /// # Errors
+    /// [`Interrupted`] by a stop.
+    fn residual(
+        &mut self,
+        x: &[Vec<f64>; N],
+        is_guess: bool,
+        r: &mut [Vec<f64>; N],
+    ) -> Result<bool, Interrupted>;
 
     /// Estimates the energy of a residual, solves `A x = r` roughly and writes x over r. `None` where these
     /// conditions have no response, which ends the refinement.
-    fn correct(&mut self, r: &mut [Vec<f64>; N], goal: Goal<N>) -> Option<StiffnessCorrection<E>>;
+    ///
+    /// # Errors
+    /// [`Interrupted`] by a stop.
+    fn correct(
+        &mut self,
+        r: &mut [Vec<f64>; N],
+        goal: Goal<N>,
+    ) -> Result<Option<StiffnessCorrection<E>>, Interrupted>;
 
     /// Change of the stiffness that the uncertainty of the state allows, by X and its last residual.
     fn set_error(&self, x: &[Vec<f64>; N]) -> f64;
@@ -130,7 +145,10 @@ pub struct StiffnessCorrection<const E: usize> {
 }
 
 /// Corrects X from a guess until the stiffness is known to half of the `tolerance`, or until that improves no
-/// more. A solve that is stopped before anything is known has an infinite error.
+/// more.
+///
+/// # Errors
+/// [`Interrupted`] by the stop, which the conditions ask too.
 ///
 /// Cost: two to four corrections, each with one application of A in double precision.
 pub fn refine<const N: usize, const E: usize, C: Conditions<N, E>>(
@@ -139,7 +157,7 @@ pub fn refine<const N: usize, const E: usize, C: Conditions<N, E>>(
     tolerance: f64,
     tuning: &Tuning,
     stop: Stop<'_>,
-) -> Stiffness<N, E>
+) -> Result<Stiffness<N, E>, Interrupted>
 where
     [f64; E]: StiffnessEntries,
 {
@@ -148,7 +166,10 @@ where
     let mut best = Stiffness::unknown();
     let (mut steps, mut unimproved) = (0, 0);
     for round in 0..tuning.stiffness_rounds {
-        let exact = x.as_ref().is_none_or(|x| conditions.residual(x, round == 0, &mut r));
+        let exact = match &x {
+            Some(x) => conditions.residual(x, round == 0, &mut r)?,
+            None => true,
+        };
         let before = x.as_ref().map_or(Products::NONE, |x| Products::new(conditions, x, &r));
         let goal = Goal {
             bases: before.bases(),
@@ -156,7 +177,7 @@ where
             enough: tuning.stiffness_share * tolerance,
             only_energy: round + 1 == tuning.stiffness_rounds || unimproved > 2,
         };
-        let Some(found) = conditions.correct(&mut r, goal) else { break };
+        let Some(found) = conditions.correct(&mut r, goal)? else { break };
         if let Some(x) = &x
             && exact
         {
@@ -179,7 +200,7 @@ where
             x = Some(r.clone());
         }
     }
-    Stiffness { steps, ..best }
+    Ok(Stiffness { steps, ..best })
 }
 
 /// An error that falls by less than this factor has not improved.

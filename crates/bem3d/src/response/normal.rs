@@ -9,7 +9,7 @@ use crate::operator::{Conditioning, Operators, Recipe};
 use crate::parts::Part;
 use crate::real::{each, sum};
 use crate::tuning::MAGNIFIED;
-use contact_model::Stop;
+use contact_model::{Interrupted, Stop};
 use std::borrow::Cow;
 
 /// The cells of a contact that follow a small change of the approach.
@@ -119,24 +119,33 @@ impl Conditions<1, 1> for FixedSet<'_> {
         [sum(q)]
     }
 
-    fn residual(&mut self, [q]: &[Vec<f64>; 1], is_guess: bool, [r]: &mut [Vec<f64>; 1]) -> bool {
-        let Self { operators, cells, targets, v, .. } = self;
+    fn residual(
+        &mut self,
+        [q]: &[Vec<f64>; 1],
+        is_guess: bool,
+        [r]: &mut [Vec<f64>; 1],
+    ) -> Result<bool, Interrupted> {
+        let Self { operators, cells, targets, v, stop, .. } = self;
         let rough = is_guess && self.rough;
         if rough {
-            operators.rough(cells, q, targets, v);
+            operators.rough(cells, q, targets, v, *stop)?;
         } else {
-            operators.exact(cells, q, targets, v);
+            operators.exact(cells, q, targets, v, *stop)?;
         }
         operators.recorder().timed(Part::Sets, || cells.carry_to(targets, v, r));
         each(r, |r| *r = 1.0 - *r);
-        !rough
+        Ok(!rough)
     }
 
-    fn correct(&mut self, [r]: &mut [Vec<f64>; 1], goal: Goal<1>) -> Option<StiffnessCorrection<1>> {
+    fn correct(
+        &mut self,
+        [r]: &mut [Vec<f64>; 1],
+        goal: Goal<1>,
+    ) -> Result<Option<StiffnessCorrection<1>>, Interrupted> {
         let Self { operators, workspace, stop, .. } = self;
         let tuning = *operators.tuning();
         if !std::mem::replace(&mut self.started, true) {
-            workspace.take(operators, self.cells.clone(), self.recipe);
+            workspace.take(operators, self.cells.clone(), self.recipe, *stop)?;
         }
         let criteria = StoppingCriteria {
             reduction: tuning.stiffness_reduction,
@@ -144,11 +153,11 @@ impl Conditions<1, 1> for FixedSet<'_> {
             floor: 0.0,
             steps: if goal.only_energy { 0 } else { tuning.stiffness_steps },
         };
-        let outcome = workspace.solve(operators, r, Fixed::Approach, criteria, *stop);
-        Some(StiffnessCorrection {
+        let outcome = workspace.solve(operators, r, Fixed::Approach, criteria, *stop)?;
+        Ok(Some(StiffnessCorrection {
             energy: [outcome.energy],
             steps: (!goal.only_energy).then_some(outcome.steps),
-        })
+        }))
     }
 
     fn set_error(&self, [q]: &[Vec<f64>; 1]) -> f64 {
@@ -172,6 +181,9 @@ pub struct StiffnessRequest {
 ///
 /// The q of a factored state is exact up to rounding, and needs no transform.
 ///
+/// # Errors
+/// [`Interrupted`] by the stop, as all of these.
+///
 /// Cost: about 10 applications of G for a relative error of 1e-4.
 pub fn solve(
     problem: &mut Problem,
@@ -179,10 +191,10 @@ pub fn solve(
     responding: &Responding<'_>,
     wanted: StiffnessRequest,
     stop: Stop<'_>,
-) -> NormalStiffness {
+) -> Result<NormalStiffness, Interrupted> {
     let cells = &*responding.cells;
     if cells.is_empty() && !state.contact.is_empty() {
-        return NormalStiffness::nothing();
+        return Ok(NormalStiffness::nothing());
     }
     let factored = state.q.as_ref().filter(|q| q.len() == cells.len());
     let q = wanted.q.or_else(|| factored.cloned());
@@ -199,7 +211,7 @@ pub fn solve_of_zero_mean(
     responding: &Responding<'_>,
     wanted: StiffnessRequest,
     stop: Stop<'_>,
-) -> NormalStiffness {
+) -> Result<NormalStiffness, Interrupted> {
     let factored = state.q.as_ref().filter(|q| q.len() == responding.cells.len());
     let wanted = StiffnessRequest { q: factored.cloned().or(wanted.q), ..wanted };
     to_magnified_tolerance(problem, wanted, factored.is_some(), stop, |problem, wanted| {
@@ -213,12 +225,12 @@ pub fn of_held_cells(
     cells: &CellSet,
     tolerance: f64,
     stop: Stop<'_>,
-) -> NormalStiffness {
+) -> Result<NormalStiffness, Interrupted> {
     let wanted = StiffnessRequest { tolerance, ..StiffnessRequest::default() };
     let found = to_magnified_tolerance(problem, wanted, false, stop, |problem, wanted| {
         on_cells(problem, StiffnessCells { cells, doubts: Doubts::default(), factored: false }, wanted, stop)
-    });
-    of_zero_mean(found, problem.operators.table().shift())
+    })?;
+    Ok(of_zero_mean(found, problem.operators.table().shift()))
 }
 
 /// The ratio of the relative error of k to that of `1' G^-1 1 = k'` with the constant c in G:
@@ -247,20 +259,20 @@ fn to_magnified_tolerance(
     mut wanted: StiffnessRequest,
     is_exact: bool,
     stop: Stop<'_>,
-    mut solve: impl FnMut(&mut Problem, StiffnessRequest) -> NormalStiffness,
-) -> NormalStiffness {
+    mut solve: impl FnMut(&mut Problem, StiffnessRequest) -> Result<NormalStiffness, Interrupted>,
+) -> Result<NormalStiffness, Interrupted> {
     let misjudged = problem.operators.tuning().misjudged;
     let constant = problem.operators.table().shift();
     let mut expected = wanted.expected.map_or(1.0, |k| magnification(constant, k));
     let mut steps = 0;
     loop {
         let tolerance = wanted.tolerance / expected;
-        let mut found = solve(problem, StiffnessRequest { tolerance, q: wanted.q, expected: None });
+        let mut found = solve(problem, StiffnessRequest { tolerance, q: wanted.q, expected: None })?;
         steps += found.steps;
         found.steps = steps;
         let magnified = magnification(constant, found.k());
         if magnified <= misjudged * expected || is_exact || found.q().is_empty() || stop.stops() {
-            return found;
+            return Ok(found);
         }
         expected = magnified;
         let [q] = found.change;
@@ -273,11 +285,11 @@ fn on_cells(
     responding: StiffnessCells<'_>,
     wanted: StiffnessRequest,
     stop: Stop<'_>,
-) -> NormalStiffness {
+) -> Result<NormalStiffness, Interrupted> {
     let StiffnessCells { cells, doubts, factored } = responding;
     let Problem { operators, workspace, .. } = problem;
     let Some(recipe) = operators.planner().system(cells, cells.len(), true) else {
-        return NormalStiffness::unknown();
+        return Ok(NormalStiffness::unknown());
     };
     let conditioning = if factored { Conditioning::Identity } else { recipe.conditioning };
     let targets = cells.union(&doubts.undecided);

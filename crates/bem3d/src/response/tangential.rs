@@ -7,7 +7,7 @@ use crate::law::total;
 use crate::linear::{Energy, StoppingCriteria, TORUS_ENERGY};
 use crate::operator::TangentialOperators;
 use crate::real::{dot, largest};
-use contact_model::Stop;
+use contact_model::{Interrupted, Stop};
 
 /// Which cells may slip in the state whose stiffness is requested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -78,24 +78,28 @@ impl Conditions<2, 3> for OnBranch<'_> {
         total(x)
     }
 
-    fn residual(&mut self, x: &[Vec<f64>; 2], _: bool, r: &mut [Vec<f64>; 2]) -> bool {
+    fn residual(&mut self, x: &[Vec<f64>; 2], _: bool, r: &mut [Vec<f64>; 2]) -> Result<bool, Interrupted> {
         let right = self.displacements();
-        let Self { operators, cells, branch, displaced, .. } = self;
+        let Self { operators, cells, branch, displaced, stop, .. } = self;
         for ((x, right), (r, u)) in x.iter().zip(&right).zip(r.iter_mut().zip(displaced)) {
-            exact(operators, cells, x, cells, u);
+            exact(operators, (cells, x), cells, u, *stop)?;
             r.clone_from(u);
             branch.restrict_f64(r);
             branch.add_turning(x, r, 1.0);
             r.iter_mut().zip(right).for_each(|(r, right)| *r = right - *r);
         }
-        true
+        Ok(true)
     }
 
-    fn correct(&mut self, r: &mut [Vec<f64>; 2], goal: Goal<2>) -> Option<StiffnessCorrection<3>> {
-        let energy = self.energy(r);
+    fn correct(
+        &mut self,
+        r: &mut [Vec<f64>; 2],
+        goal: Goal<2>,
+    ) -> Result<Option<StiffnessCorrection<3>>, Interrupted> {
+        let energy = self.energy(r)?;
         let is_enough = (0..2).all(|i| energy[i] < goal.enough * goal.bases[i]);
         if goal.only_energy || is_enough {
-            return Some(StiffnessCorrection { energy, steps: None });
+            return Ok(Some(StiffnessCorrection { energy, steps: None }));
         }
         let tuning = *self.operators.tuning();
         let mut steps = 0;
@@ -109,9 +113,9 @@ impl Conditions<2, 3> for OnBranch<'_> {
                 (tuning.stiffness_reduction, Some(Energy { share: goal.share, base }))
             };
             let criteria = StoppingCriteria { reduction, energy, floor: 0.0, steps: tuning.stiffness_steps };
-            steps += self.solve(r, criteria);
+            steps += self.solve(r, criteria)?;
         }
-        Some(StiffnessCorrection { energy, steps: Some(steps) })
+        Ok(Some(StiffnessCorrection { energy, steps: Some(steps) }))
     }
 
     /// Of both directions together.
@@ -148,30 +152,33 @@ impl Conditions<2, 3> for OnBranch<'_> {
 
 impl OnBranch<'_> {
     /// Solves `A x = r` roughly and writes x over r; returns the steps.
-    fn solve(&mut self, r: &mut [f64], criteria: StoppingCriteria) -> usize {
+    fn solve(&mut self, r: &mut [f64], criteria: StoppingCriteria) -> Result<usize, Interrupted> {
         let Self { operators, room, branch, stop, .. } = self;
         operators.solves += 1;
-        let Some(mut system) = room.system(operators, branch, true) else { return 0 };
-        let outcome = system.solve(r, criteria, *stop);
+        let Some(mut system) = room.system(operators, branch, true, *stop)? else { return Ok(0) };
+        let outcome = system.solve(r, criteria, *stop)?;
         operators.applications += outcome.applications;
-        outcome.steps
+        Ok(outcome.steps)
     }
 
     /// `R' A^-1 R`, estimated from above.
-    fn energy(&mut self, residuals: &[Vec<f64>; 2]) -> [f64; 3] {
-        let Self { operators, room, branch, .. } = self;
+    fn energy(&mut self, residuals: &[Vec<f64>; 2]) -> Result<[f64; 3], Interrupted> {
+        let Self { operators, room, branch, stop, .. } = self;
         let size = largest(&residuals[0]).max(largest(&residuals[1]));
         if size <= 0.0 {
-            return [0.0; 3];
+            return Ok([0.0; 3]);
         }
         let mut r = residuals.each_ref().map(|r| r.iter().map(|r| (r / size) as f32).collect::<Vec<f32>>());
-        let Some(z) = room.stuck_inverse(operators, branch, &mut r) else { return [0.0; 3] };
+        let Some(z) = room.stuck_inverse(operators, branch, &mut r, *stop)? else { return Ok([0.0; 3]) };
         let factor = TORUS_ENERGY * size * size;
-        [(0, 0), (1, 1), (0, 1)].map(|(i, j)| factor * dot(&r[i], &z[j]))
+        Ok([(0, 0), (1, 1), (0, 1)].map(|(i, j)| factor * dot(&r[i], &z[j])))
     }
 }
 
 /// `dT/d(delta)` of a state, to about `tolerance` relative to its larger eigenvalue.
+///
+/// # Errors
+/// [`Interrupted`] by the stop.
 ///
 /// Cost: about 20 applications for 1e-4.
 pub fn solve(
@@ -180,11 +187,11 @@ pub fn solve(
     of: StiffnessOf,
     tolerance: f64,
     stop: Stop<'_>,
-) -> TangentialStiffness {
+) -> Result<TangentialStiffness, Interrupted> {
     let FrictionSolver { operators, room, .. } = friction;
     let cells = &state.memory.cells;
     if cells.is_empty() {
-        return Stiffness::nothing();
+        return Ok(Stiffness::nothing());
     }
     let (branch, (undecided, uncertain)) = match of {
         StiffnessOf::FullStick => (SlipBranch::stuck(cells), (Vec::new(), Vec::new())),
@@ -199,9 +206,9 @@ pub fn solve(
     let displaced = [Vec::new(), Vec::new()];
     let mut conditions =
         OnBranch { operators, room, cells, branch: &branch, undecided, uncertain, displaced, stop };
-    let found = refine(&mut conditions, None, tolerance, &tuning, stop);
+    let found = refine(&mut conditions, None, tolerance, &tuning, stop)?;
     // No later solve begins with the tractions, which are as large as the state.
-    Stiffness { change: [Vec::new(), Vec::new()], ..found }
+    Ok(Stiffness { change: [Vec::new(), Vec::new()], ..found })
 }
 
 /// First the cells for which stick or slip is undecided: stick cells that the residual slip could bring to

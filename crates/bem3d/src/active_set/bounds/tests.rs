@@ -109,8 +109,8 @@ proptest! {
         prop_assert_eq!(found.len(), 1);
         let mut problem = problem(grid, &z, hardness);
         let limits = Limits { factor, ..TIGHT };
-        let guess = cold_start(&mut problem, target, limits, &never);
-        let solved = solve(&mut problem, target, guess, limits, &never);
+        let guess = cold_start(&mut problem, target, limits, &never).unwrap();
+        let solved = solve(&mut problem, target, guess, limits, &never).unwrap();
         prop_assert_eq!(solved.status, Status::Converged);
         let p = CellSet::all(grid).carry(&solved.contact, &solved.p);
         for (p, expected) in p.iter().zip(&found[0].p) {
@@ -168,7 +168,7 @@ fn the_factored_way_ends_where_cells_saturate() {
     let grid = Grid::square(2, 1);
     let mut problem = problem(grid, &[0.0, 1.0], 0.5);
     let guess = Guess { set: CellSet::all(grid), p: vec![0.1; 2], d: 1.0 };
-    let solved = solve(&mut problem, Control::Force(0.8), guess, TIGHT, &never);
+    let solved = solve(&mut problem, Control::Force(0.8), guess, TIGHT, &never).unwrap();
     assert_eq!((solved.status, solved.p.len()), (Status::Converged, 2));
     assert!(solved.p[0] >= 0.5 && (solved.p[1] - 0.3).abs() < 1e-12 && solved.q.is_none(), "{:?}", solved.p);
 }

@@ -93,7 +93,7 @@ impl FactoredState {
         let z = Arc::new(rough(grid, 9));
         let always = Tuning { always_factored: usize::MAX, ..Tuning::DEFAULT };
         let mut reference = Problem::new(grid, Arc::clone(&z), boundary, &always);
-        let exact = solve(&mut reference, target, everything(grid, target), limits(true), &never);
+        let exact = solve(&mut reference, target, everything(grid, target), limits(true), &never).unwrap();
         let factored = Self { grid, boundary, z, target, exact };
         assert_eq!(factored.exact.status, Status::Converged, "{factored}");
         // A single cell under a force is solved by its guess.
@@ -106,7 +106,7 @@ impl FactoredState {
         let Self { grid, boundary, target, exact, .. } = self;
         let what = format!("{self} {}", recipe.1);
         let mut problem = Problem::new(*grid, Arc::clone(&self.z), *boundary, &recipe.0);
-        let found = solve(&mut problem, *target, everything(*grid, *target), limits(false), &never);
+        let found = solve(&mut problem, *target, everything(*grid, *target), limits(false), &never).unwrap();
         assert_eq!((found.status, found.q.is_some()), (Status::Converged, false), "{what}");
         assert_eq!(found.contact, exact.contact, "{what}");
         assert_relative_eq!(found.d, exact.d, max_relative = 1e-7);
@@ -122,7 +122,7 @@ impl FactoredState {
         let mut stiffness = |state: &Solved| {
             let request = StiffnessRequest { tolerance: TOLERANCE, q: None, expected: None };
             let responding = Responding::whole(state, Bounds::Unlimited);
-            normal::solve(&mut problem, state, &responding, request, &never)
+            normal::solve(&mut problem, state, &responding, request, &never).unwrap()
         };
         assert_relative_eq!(stiffness(exact).k(), k, max_relative = TOLERANCE);
         let tangent = stiffness(&found);
@@ -169,7 +169,7 @@ fn the_stiffness_of_a_large_contact_is_the_same_in_every_recipe() {
     let z = rough(grid, 4);
     let target = Control::Force(4000.0);
     let mut first = problem(grid, &z, Tuning::DEFAULT);
-    let solved = solve(&mut first, target, everything(grid, target), limits(false), &never);
+    let solved = solve(&mut first, target, everything(grid, target), limits(false), &never).unwrap();
     assert!(solved.contact.len() > grid.count() / 3, "{} cells", solved.contact.len());
     let reference = normal::solve(
         &mut first,
@@ -177,7 +177,8 @@ fn the_stiffness_of_a_large_contact_is_the_same_in_every_recipe() {
         &Responding::whole(&solved, Bounds::Unlimited),
         StiffnessRequest { tolerance: 1e-8, q: None, expected: None },
         &never,
-    );
+    )
+    .unwrap();
     assert!(first.operators.last().unwrap().has_preconditioner());
     for recipe in recipes() {
         let mut problem = problem(grid, &z, recipe.0);
@@ -187,7 +188,8 @@ fn the_stiffness_of_a_large_contact_is_the_same_in_every_recipe() {
             &Responding::whole(&solved, Bounds::Unlimited),
             StiffnessRequest { tolerance: 1e-8, q: None, expected: None },
             &never,
-        );
+        )
+        .unwrap();
         assert_recipe(&problem, recipe);
         assert_relative_eq!(found.k(), reference.k(), max_relative = 1e-8);
         assert!(found.solve_error <= 1e-8 && found.solve_error > 0.0, "{}", found.solve_error);
@@ -203,14 +205,14 @@ fn a_resumed_state_is_not_evaluated_again() {
         let z = rough(grid, 4);
         let [again, resumed] = [false, true].map(|resumed| {
             let mut problem = problem(grid, &z, Tuning::DEFAULT);
-            let solved = solve(&mut problem, target, everything(grid, target), loose, &never);
+            let solved = solve(&mut problem, target, everything(grid, target), loose, &never).unwrap();
             assert_eq!(solved.status, Status::Converged);
             let before = problem.operators.plans.applications;
             let tight = if resumed {
-                resume(&mut problem, target, solved, limits(false), &never)
+                resume(&mut problem, target, solved, limits(false), &never).unwrap()
             } else {
                 let guess = Guess { set: solved.contact, p: solved.p, d: solved.d };
-                solve(&mut problem, target, guess, limits(false), &never)
+                solve(&mut problem, target, guess, limits(false), &never).unwrap()
             };
             assert_eq!(tight.status, Status::Converged);
             (tight, problem.operators.plans.applications - before)
@@ -220,10 +222,10 @@ fn a_resumed_state_is_not_evaluated_again() {
         assert_relative_eq!(resumed.0.d, again.0.d, max_relative = 1e-8);
         // Stopped at once, it is the state that it was.
         let mut problem = problem(grid, &z, Tuning::DEFAULT);
-        let solved = solve(&mut problem, target, everything(grid, target), loose, &never);
+        let solved = solve(&mut problem, target, everything(grid, target), loose, &never).unwrap();
         let (contact, d, residuals) = (solved.contact.clone(), solved.d, solved.residuals);
         let work = problem.operators.plans.applications;
-        let same = resume(&mut problem, target, solved, limits(false), &|| true);
+        let same = resume(&mut problem, target, solved, limits(false), &|| true).unwrap();
         assert_eq!((same.status, same.steps), (Status::Stopped, 0));
         assert_eq!(problem.operators.plans.applications, work);
         assert_eq!(same.contact, contact);
@@ -240,7 +242,7 @@ fn work_of_standard_solves_is_pinned() {
     for (force, most) in [(0.5, 50), (5.0, 60), (50.0, 60)] {
         let mut problem = problem(grid, &rough(grid, 3), Tuning::DEFAULT);
         let target = Control::Force(force);
-        let solved = solve(&mut problem, target, everything(grid, target), limits(false), &never);
+        let solved = solve(&mut problem, target, everything(grid, target), limits(false), &never).unwrap();
         assert_eq!(solved.status, Status::Converged);
         let work = problem.operators.plans.applications;
         println!("force {force}: {work} applications");
@@ -254,7 +256,7 @@ fn an_unreachable_tolerance_stagnates_and_keeps_the_best() {
     let mut problem = problem(grid, &rough(grid, 5), Tuning::DEFAULT);
     let target = Control::Force(3.0);
     let limits = Limits { tolerance: 1e-30, ..limits(false) };
-    let solved = solve(&mut problem, target, everything(grid, target), limits, &never);
+    let solved = solve(&mut problem, target, everything(grid, target), limits, &never).unwrap();
     assert_eq!(solved.status, Status::Stagnated);
     assert!(solved.residuals.worst() < 1e-11, "{}", solved.residuals.worst());
 }
@@ -265,11 +267,11 @@ fn stop_and_the_limit_of_iterations_are_told_apart() {
     let target = Control::Force(3.0);
     let z = rough(grid, 5);
     let mut first = problem(grid, &z, Tuning::DEFAULT);
-    let stopped = solve(&mut first, target, everything(grid, target), limits(false), &|| true);
+    let stopped = solve(&mut first, target, everything(grid, target), limits(false), &|| true).unwrap();
     assert_eq!(stopped.status, Status::Stopped);
     let mut second = problem(grid, &z, Tuning::DEFAULT);
     let few = Limits { outer_iterations: 1, ..limits(false) };
-    let limited = solve(&mut second, target, everything(grid, target), few, &never);
+    let limited = solve(&mut second, target, everything(grid, target), few, &never).unwrap();
     assert_eq!(limited.status, Status::IterationLimit);
     assert!(!limited.p.is_empty());
 }
@@ -286,7 +288,7 @@ proptest! {
         let target = Control::Force(force);
         let [exact, iterated] = [true, false].map(|factor| {
             let mut problem = problem(grid, &rough(grid, seed), Tuning::DEFAULT);
-            solve(&mut problem, target, everything(grid, target), limits(factor), &never)
+            solve(&mut problem, target, everything(grid, target), limits(factor), &never).unwrap()
         });
         prop_assert_eq!(exact.status, Status::Converged);
         prop_assert_eq!(iterated.status, Status::Converged);
@@ -305,9 +307,9 @@ proptest! {
         let grid = Grid::square(columns, rows);
         let mut problem = problem(grid, &rough(grid, seed), Tuning::DEFAULT);
         let target = Control::Force(force);
-        let pressed = solve(&mut problem, target, everything(grid, target), limits(true), &never);
+        let pressed = solve(&mut problem, target, everything(grid, target), limits(true), &never).unwrap();
         let target = Control::Approach(pressed.d);
-        let moved = solve(&mut problem, target, everything(grid, target), limits(true), &never);
+        let moved = solve(&mut problem, target, everything(grid, target), limits(true), &never).unwrap();
         assert_relative_eq!(moved.p.iter().sum::<f64>(), force, max_relative = 1e-9);
     }
 }

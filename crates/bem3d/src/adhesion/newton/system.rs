@@ -11,7 +11,7 @@ use crate::linear::{Extension, Fixed, MinresLimits, Preconditioner, TorusInverse
 use crate::operator::{Conditioning, FftConvolution, InfluenceOperator, PlannedPressure};
 use crate::parts::Recorder;
 use crate::real::{dot, each, largest, sum, update};
-use contact_model::Stop;
+use contact_model::{Interrupted, Stop};
 
 // Half and twice the value of each constant below change the work by less than 1 % (34 paths of rough maps and of
 // spheres with 65 cells a side, at a tolerance of 1e-5).
@@ -105,42 +105,44 @@ impl Linear {
     /// Solves for the change of net pressure that closes `left` on contact, the gap there, and with which the
     /// attraction of open cells follows the linearised law; `left` is on them how far the gap is from where
     /// the law is linearised. `None` where nothing is left.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop.
     pub fn solve(
         &self,
         problem: &mut Problem,
         attraction: &Attraction,
         wanted: &WantedStep<'_>,
         left: &[f64],
-    ) -> Option<NewtonSolution> {
+    ) -> Result<Option<NewtonSolution>, Interrupted> {
         let (unit, operators) = (largest(left), &mut problem.operators);
-        let recipe = operators.planner().system(&self.both, self.contact.len(), false)?;
-        if unit.is_nan() || unit <= 0.0 {
-            return None;
-        }
+        let stop = wanted.stop;
+        let recipe = operators.planner().system(&self.both, self.contact.len(), false);
+        let Some(recipe) = recipe.filter(|_| unit > 0.0) else { return Ok(None) };
         let pairs = self.coupling(attraction, wanted.state);
         let pairs = pairs.as_ref();
         let own = operators.table().own() as f32;
         let (decay, recorder) = (operators.tuning().decay, operators.recorder().clone());
-        let (kernel, torus) = operators.system(recipe);
+        let (kernel, torus) = operators.system(recipe, stop)?;
         let mut extension = Extension::default();
         if let (Conditioning::Torus { extended, .. }, Some(torus)) = (recipe.conditioning, &torus) {
             extension.set(&self.contact, torus.window(), if extended { decay } else { 0.0 });
         }
         let diagonal = self.diagonal(own);
         let mut inverse = RoughInverse { linear: self, diagonal, torus, extension, recorder };
-        let kept = KeptForce::new(self, pairs, wanted.fixed, &mut inverse);
+        let kept = KeptForce::new(self, pairs, wanted.fixed, &mut inverse, stop)?;
         let mut matrix = NewtonMatrix::new(self, kernel, pairs, wanted.fixed);
-        let product = |y: &[f32], out: &mut [f32]| matrix.multiply(y, out);
-        let precondition = |r: &mut [f32], z: &mut [f32]| kept.precondition(&mut inverse, r, z);
+        let product = |y: &[f32], out: &mut [f32]| matrix.multiply(y, out, stop);
+        let precondition = |r: &mut [f32], z: &mut [f32]| kept.precondition(&mut inverse, r, z, stop);
         let mut right: Vec<f32> = left.iter().map(|l| -(l / unit) as f32).collect();
         self.times_root(&mut right);
         let b = times_neighbours(pairs, &right);
         let limits = MinresLimits { reduction: wanted.reduction, steps: STEPS };
-        let (y, outcome) = minres(product, precondition, b, limits, wanted.stop);
+        let (y, outcome) = minres(product, precondition, b, limits, stop)?;
         let applications = matrix.applications;
         operators.plans.applications += applications;
         operators.plans.solves += 1;
-        Some(self.solution(pairs, &y, unit, outcome.steps))
+        Ok(Some(self.solution(pairs, &y, unit, outcome.steps)))
     }
 
     /// How the attractions of open cells follow the gaps of others; nothing on contact.
@@ -195,13 +197,13 @@ impl<'a> NewtonMatrix<'a> {
     }
 
     /// Writes the product by it.
-    fn multiply(&mut self, y: &[f32], out: &mut [f32]) {
+    fn multiply(&mut self, y: &[f32], out: &mut [f32], stop: Stop<'_>) -> Result<(), Interrupted> {
         let Self { linear, kernel, pairs, fixed, source, u, applications } = self;
         *applications += 1;
         add_neighbours(*pairs, y, source);
         let own: Vec<f32> = source.iter().zip(&linear.is_open).map(|(s, open)| s * open).collect();
         linear.times_root(source);
-        kernel.apply(&linear.both, source, &linear.both, u);
+        kernel.apply_until(&linear.both, source, &linear.both, u, stop)?;
         if let Fixed::MeanPlane(constant) = fixed {
             let offset = (*constant * sum(source)) as f32;
             each(u, |u| *u -= offset);
@@ -209,6 +211,7 @@ impl<'a> NewtonMatrix<'a> {
         linear.times_root(u);
         add_neighbours(*pairs, u, out);
         update(out, &own, |out, own| *out -= own);
+        Ok(())
     }
 }
 
@@ -236,19 +239,20 @@ struct RoughInverse<'a> {
 }
 
 impl RoughInverse<'_> {
-    fn apply(&mut self, r: &[f32], z: &mut [f32]) {
+    fn apply(&mut self, r: &[f32], z: &mut [f32], stop: Stop<'_>) -> Result<(), Interrupted> {
         let Self { linear, diagonal, torus, extension, recorder } = self;
         let Linear { contact, both, is_open, .. } = linear;
         z.copy_from_slice(r);
         update(z, diagonal, |z, d| *z *= d);
-        let Some(transform) = torus.as_deref_mut() else { return };
+        let Some(transform) = torus.as_deref_mut() else { return Ok(()) };
         update(z, is_open, |z, open| *z *= open);
         let mut on_contact = contact.carry(both, r);
         let mut found = vec![0.0; contact.len()];
         let extensions = std::array::from_mut(extension);
         let mut inverse = TorusInverse { transform, extensions, recorder: recorder.clone() };
-        inverse.apply(contact, 0.0, &mut on_contact, &mut found);
+        inverse.apply(contact, 0.0, &mut on_contact, &mut found, stop)?;
         both.add_carried(contact, &found, z);
+        Ok(())
     }
 }
 
@@ -261,17 +265,29 @@ struct KeptForce {
 }
 
 impl KeptForce {
-    fn new(linear: &Linear, pairs: Option<&Pairs>, fixed: Fixed, inverse: &mut RoughInverse<'_>) -> Self {
+    fn new(
+        linear: &Linear,
+        pairs: Option<&Pairs>,
+        fixed: Fixed,
+        inverse: &mut RoughInverse<'_>,
+        stop: Stop<'_>,
+    ) -> Result<Self, Interrupted> {
         let force = times_neighbours(pairs, &linear.root);
         let mut kept = Self { weights: vec![0.0; force.len()], force, total: 0.0 };
         if fixed == Fixed::Force {
-            inverse.apply(&kept.force, &mut kept.weights);
+            inverse.apply(&kept.force, &mut kept.weights, stop)?;
             kept.total = dot(&kept.force, &kept.weights);
         }
-        kept
+        Ok(kept)
     }
 
-    fn precondition(&self, inverse: &mut RoughInverse<'_>, r: &mut [f32], z: &mut [f32]) {
+    fn precondition(
+        &self,
+        inverse: &mut RoughInverse<'_>,
+        r: &mut [f32],
+        z: &mut [f32],
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
         let Self { force, weights, total } = self;
         let less = |values: &mut [f32], share: f64, of: &[f32]| {
             let share = share as f32;
@@ -280,9 +296,10 @@ impl KeptForce {
         if *total > 0.0 {
             less(r, dot(weights, r) / total, force);
         }
-        inverse.apply(r, z);
+        inverse.apply(r, z, stop)?;
         if *total > 0.0 {
             less(z, dot(force, z) / total, weights);
         }
+        Ok(())
     }
 }

@@ -9,7 +9,7 @@ use crate::parts::Recorder;
 use crate::real::sum;
 use crate::tuning::Tuning;
 use approx::assert_relative_eq;
-use contact_model::{Boundary, never};
+use contact_model::{Boundary, Interrupted, never};
 
 /// Rounding of a few additions.
 const ROUNDING_OF_SUMS: f64 = 1e-14;
@@ -26,19 +26,20 @@ struct PressureOnAll {
 
 impl PressureOnAll {
     /// Descends in at most this number of steps. Returns the number of steps taken.
-    fn descend(&mut self, steps: usize, stop: Stop<'_>) -> usize {
+    fn descend(&mut self, steps: usize, stop: Stop<'_>) -> Result<usize, Interrupted> {
         let Self { operators, cells, law, force, p, gap } = self;
         let own = operators.table().own();
         let force = force.map(|force| [force]);
         let descent = Descent { law: &*law, force, tractions: p, gradient: gap, own };
-        descend(descent, |change, u| operators.exact(cells, change, cells, u), steps, stop)
+        let displace = |change: &[f64], u: &mut Vec<f64>| operators.exact(cells, change, cells, u, stop);
+        descend(descent, displace, steps, stop)
     }
 
     /// Energy `p'Gp/2 + z'p` and gap `Gp + z` of the pressure.
     fn evaluated(&mut self, z: &[f64]) -> (f64, Vec<f64>) {
         let Self { operators, cells, p, .. } = self;
         let mut u = Vec::new();
-        operators.exact(cells, p, cells, &mut u);
+        operators.exact(cells, p, cells, &mut u, &never).unwrap();
         let energy = 0.5 * dot(p, &u) + dot(p, z);
         u.iter_mut().zip(z).for_each(|(u, z)| *u += z);
         (energy, u)
@@ -61,7 +62,7 @@ impl PressureOnAll {
                 assert_relative_eq!(*gap, *exact, epsilon = 1e-12, max_relative = 1e-12);
             }
             (last, self.gap) = (energy, exact);
-            if taken == 0 {
+            if taken == Ok(0) {
                 break;
             }
         }
@@ -143,7 +144,7 @@ fn every_step_lowers_the_energy_of_tractions_too() {
             law.project(&mut q, force);
             let mut evaluated = |q: &[f64]| {
                 let mut u = Vec::new();
-                operators.exact(&cells, q, &cells, &mut u);
+                operators.exact(&cells, q, &cells, &mut u, &never).unwrap();
                 let gradient: Vec<f64> = (0..2 * n).map(|k| u[k] - delta[usize::from(k >= n)]).collect();
                 let energy = 0.5 * dot(q, &u) - delta[0] * sum(&q[..n]) - delta[1] * sum(&q[n..]);
                 (energy, gradient)
@@ -157,8 +158,9 @@ fn every_step_lowers_the_energy_of_tractions_too() {
                     &Tuning::DEFAULT,
                     &Recorder::default(),
                 );
-                let displace = |change: &[f64], u: &mut Vec<f64>| other.exact(&cells, change, &cells, u);
-                let taken = descend(descent, displace, 5, &never);
+                let displace =
+                    |change: &[f64], u: &mut Vec<f64>| other.exact(&cells, change, &cells, u, &never);
+                let taken = descend(descent, displace, 5, &never).unwrap();
                 let (energy, exact) = evaluated(&q);
                 assert!(energy <= last + 1e-12 * last.abs(), "{energy} {last}");
                 assert!((0..n).all(|i| q[i].hypot(q[n + i]) <= limit[i]));
@@ -193,9 +195,9 @@ fn nothing_is_done_at_a_solution_or_when_stopped() {
         gap: vec![0.5, -0.5, 0.5],
     };
     // The saturated cell is the lowest.
-    assert_eq!(pressure.descend(9, &never), 0);
+    assert_eq!(pressure.descend(9, &never), Ok(0));
     assert_eq!((&pressure.p[..], pressure.operators.plans.applications), (&[0.0, 1.0, 0.0][..], 0));
     (pressure.p, pressure.gap) = (vec![1.0, 0.0, 0.0], vec![0.5, -0.5, 0.5]);
-    assert_eq!(pressure.descend(9, &|| true), 0);
+    assert_eq!(pressure.descend(9, &|| true), Err(Interrupted));
     assert_eq!(pressure.p, [1.0, 0.0, 0.0]);
 }

@@ -7,6 +7,7 @@ use crate::operator::DirectSum;
 use crate::real::{dot, largest};
 use approx::assert_relative_eq;
 use contact_model::Boundary;
+use contact_model::never;
 use proptest::prelude::*;
 
 /// Rounding of a double-precision transform of a few thousand points.
@@ -56,7 +57,8 @@ fn a_circular_length_of_twice_n_less_one_is_exact() {
         );
         let p = pressure(all.len());
         let mut u = vec![0.0; p.len()];
-        FftConvolution::new(window, lengths, table.symbol_f64(lengths)).apply(&all, &p, &all, &mut u);
+        FftConvolution::new(window, lengths, table.symbol_f64(lengths, &never).unwrap())
+            .apply(&all, &p, &all, &mut u);
         for (a, b) in directly(&table, &all, &p, &all).iter().zip(&u) {
             assert_relative_eq!(a, b, max_relative = DOUBLE);
         }
@@ -78,11 +80,11 @@ fn the_torus_inverse_undoes_the_operator_on_smooth_pressure() {
             })
             .collect();
         let mut u = Vec::new();
-        operators.exact(&all, &p, &all, &mut u);
+        operators.exact(&all, &p, &all, &mut u, &never).unwrap();
         let conditioning =
             Conditioning::Torus { lengths: operators.table().torus_lengths(grid.window()), extended: true };
         let system = Recipe { conditioning, ..recipe(grid.window(), Application::Direct) };
-        let (_, inverse) = operators.system(system);
+        let (_, inverse) = operators.system(system, &never).unwrap();
         let mut back = vec![0.0; p.len()];
         inverse.unwrap().apply(&all, &u, &all, &mut back);
         let inner = |x: usize, n: usize| (n / 6..n - n / 6).contains(&x);
@@ -106,10 +108,14 @@ fn a_shortened_transform_is_exact_up_to_three_quarters_of_the_window_and_positiv
         let table = Arc::clone(&operators.plans.table);
         let (short, free) = (table.shortened_lengths(window, 1.5), table.exact_lengths(window));
         assert_eq!(short, expected);
-        assert!(table.symbol_f64(short).iter().all(|&[s]| s > 0.0));
+        assert!(table.symbol_f64(short, &never).unwrap().iter().all(|&[s]| s > 0.0));
         let mut apply = |lengths: Lengths, p: &[f64]| {
             let mut u = vec![0.0; p.len()];
-            operators.system(recipe(window, Application::Fft(lengths))).0.apply(&all, p, &all, &mut u);
+            operators
+                .system(recipe(window, Application::Fft(lengths)), &never)
+                .unwrap()
+                .0
+                .apply(&all, p, &all, &mut u);
             u
         };
         // One pressed cell in a corner: u is the kernel itself; lags of more than half way round are taken
@@ -159,7 +165,11 @@ fn a_transform_is_planned_once_and_kept_where_it_serves() {
         let lengths = if short { table.shortened_lengths(w, 1.5) } else { table.exact_lengths(w) };
         let set = rows(w);
         let (p, mut u) = (pressure(set.len()), vec![0.0; set.len()]);
-        operators.system(recipe(w, Application::Fft(lengths))).0.apply(&set, &p, &set, &mut u);
+        operators
+            .system(recipe(w, Application::Fft(lengths)), &never)
+            .unwrap()
+            .0
+            .apply(&set, &p, &set, &mut u);
         assert_eq!(planned(&operators), (single, shortened));
         // Lags are taken the shorter way round the plan that was used, which is exact for all of them where
         // it is not a short one.
@@ -184,19 +194,19 @@ fn applications_are_counted_and_empty_sets_are_free() {
     let p = pressure(all.len());
     for (sources, p, targets) in [(&none, &[][..], &all), (&all, &p[..], &none)] {
         let mut u = vec![1.0; 7];
-        operators.rough(sources, p, targets, &mut u);
+        operators.rough(sources, p, targets, &mut u, &never).unwrap();
         assert!(u.len() == targets.len() && u.iter().all(|&u| u == 0.0));
-        operators.exact(sources, p, targets, &mut u);
+        operators.exact(sources, p, targets, &mut u, &never).unwrap();
         assert!(u.len() == targets.len() && u.iter().all(|&u| u == 0.0));
     }
     assert_eq!(operators.plans.applications, 0);
     // A few cells never pay for a transform of the grid.
     let (few, mut u) = (CellSet::from_index(grid, &[0, 65, 4095]), Vec::new());
-    operators.exact(&few, &[1.0, 2.0, 3.0], &few, &mut u);
+    operators.exact(&few, &[1.0, 2.0, 3.0], &few, &mut u, &never).unwrap();
     assert!(operators.plans.double.is_none() && operators.plans.applications == 1);
-    operators.exact(&all, &p, &all, &mut u);
+    operators.exact(&all, &p, &all, &mut u, &never).unwrap();
     assert!(operators.plans.double.is_some() && operators.plans.applications == 2);
-    operators.rough(&all, &p, &all, &mut u);
+    operators.rough(&all, &p, &all, &mut u, &never).unwrap();
     assert!(operators.plans.single.is_some() && operators.plans.applications == 3);
     assert!(operators.last().is_none() && operators.plans.solves == 0, "no system was solved");
 }
@@ -219,12 +229,12 @@ fn two_levels_follow_the_sets_and_are_kept_where_they_fit() {
     for cells in [&left, &right, &left, &part] {
         let p = pressure(cells.len());
         let (exact, mut fast) = (directly(&table, cells, &p, cells), Vec::new());
-        operators.rough(cells, &p, cells, &mut fast);
+        operators.rough(cells, &p, cells, &mut fast, &never).unwrap();
         assert!(difference(&exact, &fast) <= INTERPOLATED * largest(&exact), "{}", difference(&exact, &fast));
         // A system on the same cells is solved with the same plan.
         let system = operators.planner().system(cells, cells.len(), false).unwrap();
         assert!(system.to_string().starts_with("two levels, spacing"), "{system}");
-        operators.system(system).0.apply(cells, &p, cells, &mut fast);
+        operators.system(system, &never).unwrap().0.apply(cells, &p, cells, &mut fast);
         assert!(difference(&exact, &fast) <= INTERPOLATED * largest(&exact));
         assert_eq!(operators.last(), Some(system));
         plans.push(operators.two_level.as_ref().map(|o| (o.window(), o.split())).unwrap());
@@ -271,19 +281,19 @@ proptest! {
         let window = sources.window().unwrap().union(targets.window().unwrap());
         let lengths = table.exact_lengths(window);
         let mut u = vec![0.0; targets.len()];
-        FftConvolution::new(window, lengths, table.symbol_f64(lengths)).apply(&sources, &p, &targets, &mut u);
+        FftConvolution::new(window, lengths, table.symbol_f64(lengths, &never).unwrap()).apply(&sources, &p, &targets, &mut u);
         prop_assert!(difference(&exact, &u) <= DOUBLE * scale);
-        let mut single = FftConvolution::<f32>::new(window, lengths, table.symbol_f32(lengths));
+        let mut single = FftConvolution::<f32>::new(window, lengths, table.symbol_f32(lengths, &never).unwrap());
         single.apply(&sources, &p, &targets, &mut u);
         prop_assert!(difference(&exact, &u) <= SINGLE * scale);
         // What is chosen, and what is planned for a larger window.
         let mut operators = operators(grid, boundary);
         let all = CellSet::all(grid);
-        operators.rough(&all, &pressure(all.len()), &all, &mut Vec::new());
-        operators.rough(&sources, &p, &targets, &mut u);
+        operators.rough(&all, &pressure(all.len()), &all, &mut Vec::new(), &never).unwrap();
+        operators.rough(&sources, &p, &targets, &mut u, &never).unwrap();
         prop_assert!(difference(&exact, &u) <= 1e-4 * scale);
-        operators.exact(&all, &pressure(all.len()), &all, &mut Vec::new());
-        operators.exact(&sources, &p, &targets, &mut u);
+        operators.exact(&all, &pressure(all.len()), &all, &mut Vec::new(), &never).unwrap();
+        operators.exact(&sources, &p, &targets, &mut u, &never).unwrap();
         prop_assert!(difference(&exact, &u) <= DOUBLE * scale);
     }
 
@@ -301,8 +311,8 @@ proptest! {
         let mut operators = operators(grid, boundary);
         let (pa, pb) = (pressure(a.len()), pressure(b.len()));
         let (mut ub, mut ua) = (Vec::new(), Vec::new());
-        operators.exact(&a, &pa, &b, &mut ub);
-        operators.exact(&b, &pb, &a, &mut ua);
+        operators.exact(&a, &pa, &b, &mut ub, &never).unwrap();
+        operators.exact(&b, &pb, &a, &mut ua, &never).unwrap();
         let (one, two) = (dot(&ub, &pb), dot(&ua, &pa));
         prop_assert!((one - two).abs() <= DOUBLE * one.abs());
     }

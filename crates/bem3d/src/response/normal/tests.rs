@@ -40,7 +40,7 @@ fn solve(
     guess: Option<Vec<f64>>,
     tolerance: f64,
     stop: Stop<'_>,
-) -> NormalStiffness {
+) -> Result<NormalStiffness, Interrupted> {
     let wanted = StiffnessRequest { tolerance, q: guess, expected: None };
     super::solve(problem, state, &Responding::whole(state, Bounds::Unlimited), wanted, stop)
 }
@@ -59,7 +59,7 @@ fn state(grid: Grid, p: &[f64], gap: Vec<f64>) -> Solved {
     let guess = Guess { set: CellSet::from_index(grid, &[0]), p: vec![1.0], d: 1.0 };
     let limits = Limits { tolerance: 0.5, height: None, outer_iterations: 0, factor: false };
     let problem = &mut flat(grid, Tuning::DEFAULT);
-    let mut state = active_set::solve(problem, Control::Approach(1.0), guess, limits, &never);
+    let mut state = active_set::solve(problem, Control::Approach(1.0), guess, limits, &never).unwrap();
     (state.continuation.checked, state.continuation.gap) = (checked, gap);
     Solved { contact, p, d: 1.0, q: None, steps: 0, status: Status::Converged, ..state }
 }
@@ -90,9 +90,9 @@ fn full_contact_of_small_squares() {
             let (set, p) = (CellSet::all(grid), vec![1.0; grid.count()]);
             let guess = Guess { set, p, d: 4.0 * grid.count() as f64 };
             let limits = Limits { tolerance: 1e-9, height: None, outer_iterations: 100, factor };
-            let solved = active_set::solve(&mut problem, Control::Force(1.0), guess, limits, &never);
+            let solved = active_set::solve(&mut problem, Control::Force(1.0), guess, limits, &never).unwrap();
             assert_eq!((solved.status, solved.contact.len()), (Status::Converged, grid.count()));
-            let k = solve(&mut problem, &solved, None, 1e-9, &never);
+            let k = solve(&mut problem, &solved, None, 1e-9, &never).unwrap();
             assert_relative_eq!(PI * k.k() / side as f64, expected, max_relative = 5e-9);
             assert!(k.error() < 1e-9, "{}", k.error());
         }
@@ -107,7 +107,7 @@ fn the_estimate_covers_a_loose_solve() {
         for tuning in recipes() {
             let mut problem = flat(grid, tuning);
             for tolerance in [1e-1, 1e-2, 1e-3, 1e-4, 1e-9] {
-                let loose = solve(&mut problem, &state, None, tolerance, &never);
+                let loose = solve(&mut problem, &state, None, tolerance, &never).unwrap();
                 let (error, estimate) = ((loose.k() / exact - 1.0).abs(), loose.solve_error);
                 let rounding = 1e-12;
                 assert!(
@@ -170,7 +170,7 @@ fn the_stated_error_of_an_undecided_corner_is_what_the_corner_changes() {
             let exact = factored(state, grid);
             let ways = recipes().map(|tuning| (tuning, state)).into_iter().chain([(Tuning::DEFAULT, &exact)]);
             for (tuning, state) in ways {
-                let k = solve(&mut flat(grid, tuning), state, None, TIGHT, &never);
+                let k = solve(&mut flat(grid, tuning), state, None, TIGHT, &never).unwrap();
                 assert_relative_eq!(k.k(), own, max_relative = TIGHT);
                 let ratio = k.set_error * k.k() / (with - without);
                 assert!((1.0..excess).contains(&ratio), "{grid:?}: {ratio}");
@@ -186,7 +186,7 @@ fn every_recipe_states_the_same_error_of_a_guess() {
         let (state, guess) = (full(grid), vec![0.05; grid.count()]);
         let exact: f64 = factored(&state, grid).q.unwrap().iter().sum();
         let [pairs, transforms, plain_pairs, plain_transforms] = recipes().map(|tuning| {
-            let k = solve(&mut flat(grid, tuning), &state, Some(guess.clone()), 10.0, &never);
+            let k = solve(&mut flat(grid, tuning), &state, Some(guess.clone()), 10.0, &never).unwrap();
             assert_eq!((k.steps, k.q()), (0, guess.as_slice()));
             assert!(k.solve_error > 1e-3 && k.solve_error >= exact / k.k() - 1.0);
             k
@@ -206,15 +206,15 @@ fn a_good_guess_costs_no_step_and_a_cold_start_a_few() {
         let state = full(grid);
         for tuning in preconditioned() {
             let mut problem = flat(grid, tuning);
-            let cold = solve(&mut problem, &state, None, 1e-4, &never);
+            let cold = solve(&mut problem, &state, None, 1e-4, &never).unwrap();
             let (cold_work, steps) = (problem.operators.plans.applications, cold.steps);
             // Counts, not times: one correction reaches what is asked, and one exact application says so.
             assert_eq!(cold_work, steps + 1);
             assert!((3..=8).contains(&steps) && cold_work <= 10, "{steps} steps, {cold_work} applications");
-            let tight = solve(&mut problem, &state, Some(cold.q().to_vec()), TIGHT, &never);
+            let tight = solve(&mut problem, &state, Some(cold.q().to_vec()), TIGHT, &never).unwrap();
             assert!(tight.steps > 0);
             let before = problem.operators.plans.applications;
-            let warm = solve(&mut problem, &state, Some(tight.q().to_vec()), 1e-6, &never);
+            let warm = solve(&mut problem, &state, Some(tight.q().to_vec()), 1e-6, &never).unwrap();
             assert_eq!(warm.steps, 0);
             // Where one application would be a transform, the first is one in single precision.
             let looks =
@@ -223,7 +223,7 @@ fn a_good_guess_costs_no_step_and_a_cold_start_a_few() {
         }
         // That of a factored state is exact.
         let mut problem = flat(grid, Tuning::DEFAULT);
-        let exact = solve(&mut problem, &factored(&state, grid), None, TIGHT, &never);
+        let exact = solve(&mut problem, &factored(&state, grid), None, TIGHT, &never).unwrap();
         assert!(exact.steps == 0 && exact.solve_error < 1e-12, "{}", exact.solve_error);
         assert_eq!(problem.operators.plans.applications, 1);
         assert!(
@@ -238,20 +238,27 @@ fn a_stopped_solve_claims_nothing() {
     let grid = Grid::square(8, 8);
     for tuning in recipes() {
         let mut problem = flat(grid, tuning);
-        let k = solve(&mut problem, &full(grid), None, TIGHT, &|| true);
-        assert!(k.solve_error.is_infinite() && k.q().is_empty());
-        assert_eq!(problem.operators.plans.applications, 1);
-        // Stopped later, it returns what it has.
         let polls = Cell::new(0);
-        let few = || {
+        let count = || {
             polls.set(polls.get() + 1);
-            polls.get() > 3
+            false
         };
-        let k = solve(&mut problem, &full(grid), None, TIGHT, &few);
-        assert!(k.solve_error > TIGHT && k.solve_error < 1.0, "{}", k.solve_error);
+        assert!(solve(&mut problem, &full(grid), None, TIGHT, &count).unwrap().solve_error <= TIGHT);
+        assert!(polls.get() > 3);
+        for before in [0, 1, 2] {
+            polls.set(0);
+            let few = || {
+                polls.set(polls.get() + 1);
+                polls.get() > before
+            };
+            let stopped = solve(&mut problem, &full(grid), None, TIGHT, &few);
+            assert!(stopped.is_err() && polls.get() == before + 1, "nothing is asked after a stop");
+        }
     }
     let nothing = state(grid, &[0.0; 64], vec![1.0; 64]);
-    assert!(solve(&mut flat(grid, Tuning::DEFAULT), &nothing, None, TIGHT, &never).error().is_infinite());
+    assert!(
+        solve(&mut flat(grid, Tuning::DEFAULT), &nothing, None, TIGHT, &never).unwrap().error().is_infinite()
+    );
 }
 
 #[test]
@@ -259,7 +266,7 @@ fn an_unattainable_tolerance_ends_when_nothing_improves() {
     let grid = Grid::square(16, 16);
     for tuning in preconditioned() {
         let mut problem = flat(grid, tuning);
-        let k = solve(&mut problem, &full(grid), None, -1.0, &never);
+        let k = solve(&mut problem, &full(grid), None, -1.0, &never).unwrap();
         assert!(k.solve_error < 1e-13, "{}", k.solve_error);
         let work = problem.operators.plans.applications;
         println!("{work} applications {} steps", k.steps);

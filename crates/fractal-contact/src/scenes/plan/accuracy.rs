@@ -385,11 +385,11 @@ mod tests {
         let refused = refused.unwrap_err();
         assert!(tried.len() < 5 && refused.contains(" and the budget is 2.0 s"), "{tried:?} {refused}");
         assert!(refused.contains("(`stiffness` under mean pressure 0.01)"), "{refused}");
-        let (refused, tried) = asked("accuracy = 1e-3\nmemory = \"60 MB\"");
+        let (refused, tried) = asked("accuracy = 1e-3\nmemory = \"70 MB\"");
         let refused = refused.unwrap_err();
         assert_eq!(tried, [128, 256, 512]);
         assert!(
-            refused.contains("1024 cells along the longer side need up to 210 MB, and the `memory` is 60 MB"),
+            refused.contains("1024 cells along the longer side need up to 253 MB, and the `memory` is 70 MB"),
             "{refused}"
         );
         assert!(asked("accuracy = 1e-3\nmemory = \"1 MB\"").1.is_empty());
@@ -408,7 +408,7 @@ mod tests {
         assert_eq!(best("budget = \"3.3 s\"", 1), Ok(1024));
         assert_eq!(best("budget = \"3.3 s\"", 4), Ok(512));
         assert_eq!(best("budget = \"1 h\"", 1), Ok(4096));
-        assert_eq!(best("budget = \"1 h\"\nmemory = \"14 GB\"", 1), Ok(8192));
+        assert_eq!(best("budget = \"1 h\"\nmemory = \"16 GB\"", 1), Ok(8192));
         assert!(best("budget = \"1 us\"", 1).unwrap_err().contains("and the budget is under 1 ms"));
     }
 

@@ -7,7 +7,7 @@ use crate::scenes::plan::Cost;
 use crate::scenes::read::{
     LoadList, LoadRequest, Numerics, PrescribedLoad, Result, SceneFile, SceneSurface, cells, sampled, step_to,
 };
-use bem3d::BYTES_PER_CELL;
+use bem3d::{BYTES_PER_CELL, solve_bytes};
 use contact_model::{Adhesion, Cells, ContactState, Coupling, Friction, Surface};
 use mdr1d::BYTES_PER_ELEMENT;
 use std::time::{Duration, Instant};
@@ -33,9 +33,8 @@ const APPLICATIONS_EXPONENT: f64 = 0.3;
 /// `effects` and `adhesion map` of `bem3d`.
 const FRONTS_TIME_EXPONENT: f64 = 2.9;
 const FRONTS_APPLICATIONS_EXPONENT: f64 = 0.8;
-/// What adhesion takes beside, where all cells are within reach: states of the last sweeps. Measured from
-/// outside on that example.
-const ADHESION_BYTES: f64 = 300.0;
+/// A prepared contact and its map, in bytes for each cell.
+const PREPARED_BYTES: f64 = 18.0;
 /// Up to this number of cells a side a dense state takes a microsecond for each cell, and beyond it the time
 /// grows with [`TIME_EXPONENT`]: 0.7 to 1.0 us at 513, 0.9 to 1.8 at 2049, 1.5 to 5 at 4097 and 8193
 /// (`data/bench/scaling.csv`, `data/bench/large.csv`). A light contact takes down to a thirtieth of that.
@@ -71,11 +70,11 @@ pub(crate) fn of_sizes(scene: &SceneFile, model: usize) -> Cost {
     let surfaces = scene.surfaces_of(numerics) as f64;
     let milliseconds = milliseconds_of_sizes(scene, numerics) as f64;
     let states = scene.request.count() as f64 * surfaces;
-    let (fields, field_bytes, memory) = fields(scene, numerics, states);
+    let (fields, field_bytes) = fields(scene, numerics, states);
     let has_cells = numerics.boundary_elements().is_some();
     Cost {
         seconds: 1e-3 * milliseconds * surfaces * with_coarser_grids(scene, numerics),
-        memory: if has_cells { memory + least_memory(scene, numerics) } else { 0.0 },
+        memory: if has_cells { memory(scene, numerics) } else { 0.0 },
         fields,
         field_bytes,
         ..Cost::default()
@@ -133,12 +132,16 @@ fn rough_sweep(scene: &SceneFile, model: &bem3d::Bem3d) -> Option<f64> {
 /// (`data/bench/single.csv`). In a sweep each begins where the one before ended, which leaves a fifth of it at a
 /// tolerance of 1e-3.
 pub fn seconds_of_rough_sweep(side: f64, tolerance: f64, fractal_dimension: f64, force_bar: &[f64]) -> f64 {
-    let filled = |force: &f64| force.powf(0.9) / (force.powf(0.9) + 0.5);
-    let loads: f64 = force_bar.iter().map(|force| 0.005 + 1.2 * filled(force)).sum();
+    let loads: f64 = force_bar.iter().map(|&force| 0.005 + 1.2 * filled(force)).sum();
     let digits = 1.0 + 0.2 * (-tolerance.log10() - 3.0);
     // Under one load the contact of a rougher surface has fewer cells.
     let rough = 2_f64.powf(1.3 * (2.45 - fractal_dimension));
     0.2 * digits * rough * (side / 512.0).powf(2.2) * loads
+}
+
+/// About the share of a self-affine surface that a normalised force fills, rather too much.
+fn filled(force_bar: f64) -> f64 {
+    force_bar.powf(0.9) / (force_bar.powf(0.9) + 0.5)
 }
 
 /// Seconds of a state that fills its grid: a microsecond for each cell, more on large grids and with adhesion.
@@ -158,8 +161,7 @@ fn seconds_of_dense(scene: &SceneFile, numerics: &Numerics) -> f64 {
 /// Memory of one surface of a model with cells in a contact that fills the grid, in bytes: the most that a
 /// state takes.
 pub(crate) fn largest_memory(scene: &SceneFile, model: usize) -> f64 {
-    let Cells { columns, rows } = cells(scene, &scene.models[model]);
-    of_sizes(scene, model).memory + bem3d::bytes_per_cell(1.0) * columns as f64 * rows as f64
+    memory_at(scene, &scene.models[model], 1.0)
 }
 
 /// The work of a state with that of its coarser grids, over its own.
@@ -171,17 +173,15 @@ fn with_coarser_grids(scene: &SceneFile, numerics: &Numerics) -> f64 {
     }
 }
 
-/// Number of the fields of all states, their bytes, and the memory of those of one state with what adhesion
-/// takes; all zero for a model without cells.
-fn fields(scene: &SceneFile, numerics: &Numerics, states: f64) -> (f64, f64, f64) {
-    let (Numerics::Bem3d(_) | Numerics::Equivalent(_)) = numerics else { return (0.0, 0.0, 0.0) };
+/// Number of the fields of all states, and their bytes; both zero for a model without cells.
+fn fields(scene: &SceneFile, numerics: &Numerics, states: f64) -> (f64, f64) {
+    let (Numerics::Bem3d(_) | Numerics::Equivalent(_)) = numerics else { return (0.0, 0.0) };
     let Cells { columns, rows } = cells(scene, numerics);
     let count = columns as f64 * rows as f64;
     let outputs = &scene.requested.outputs;
     let named = [outputs.pressure, outputs.displacement, outputs.gap, outputs.plastic_depth];
     let of_state = named.iter().filter(|f| **f).count() as f64;
-    let adhesion = if scene.effects.adhesion == Adhesion::Off { 0.0 } else { ADHESION_BYTES };
-    (of_state * states, of_state * states * count * 8.0, count * (adhesion + 8.0 * of_state))
+    (of_state * states, of_state * states * count * 8.0)
 }
 
 /// Time and work of a small solve, scaled. What a small grid refuses is not predicted: its run will tell.
@@ -228,18 +228,34 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
     cost.linear_solves *= per_state;
     cost.fields *= per_state;
     if let Numerics::Bem3d(_) | Numerics::Equivalent(_) = numerics {
-        let memory;
-        (cost.fields, cost.field_bytes, memory) = fields(scene, numerics, total);
-        cost.memory = memory + count * (BYTES_PER_CELL + bem3d::bytes_per_cell(solved.filled));
+        (cost.fields, cost.field_bytes) = fields(scene, numerics, total);
+        cost.memory = memory_at(scene, numerics, solved.filled);
     }
     cost
 }
 
-/// Memory that a model needs for one surface at least, bytes; at least 1.
-pub(crate) fn least_memory(scene: &SceneFile, numerics: &Numerics) -> f64 {
-    let Cells { columns, rows } = cells(scene, numerics);
+/// Memory that a model needs for one surface under the loads of the scene, bytes; at least 1. Where it is not known
+/// what they fill, that of contact everywhere.
+pub(crate) fn memory(scene: &SceneFile, numerics: &Numerics) -> f64 {
+    let contact = match (&scene.surface, &scene.request) {
+        (
+            SceneSurface::Plain(Surface::SelfAffine(_)),
+            LoadRequest::Loads(LoadList { kind: PrescribedLoad::ForceBar, values }),
+        ) => filled(values.iter().copied().fold(0.0, f64::max)),
+        _ => 1.0,
+    };
+    memory_at(scene, numerics, contact)
+}
+
+/// The same where a share of the cells touches.
+fn memory_at(scene: &SceneFile, numerics: &Numerics, contact: f64) -> f64 {
+    let cells = cells(scene, numerics);
+    let count = cells.columns as f64 * cells.rows as f64;
     let bytes = match numerics {
-        Numerics::Bem3d(_) | Numerics::Equivalent(_) => BYTES_PER_CELL * columns as f64 * rows as f64,
+        Numerics::Bem3d(_) | Numerics::Equivalent(_) => {
+            let solve = solve_bytes(&scene.effects, &scene.requested.outputs, cells, contact);
+            (PREPARED_BYTES * count + solve).max(BYTES_PER_CELL * count)
+        }
         _ => BYTES_PER_ELEMENT * numerics.size() as f64,
     };
     bytes.max(1.0)
@@ -253,7 +269,7 @@ pub(crate) fn jobs_in_memory(scene: &SceneFile, most: usize) -> Result<usize> {
     let mut jobs = most;
     for numerics in &scene.models {
         let name = if numerics.boundary_elements().is_some() { "cells" } else { "elements" };
-        let memory = least_memory(scene, numerics);
+        let memory = memory(scene, numerics);
         jobs = runs::threads_for_memory(jobs, memory, name, numerics.size())?;
     }
     Ok(jobs)

@@ -60,7 +60,7 @@ pub fn solve_jobs_in_order(
     }
     // The largest one first: its size is the one to name where it does not fit.
     let memory = |scene: &SceneFile| {
-        scene.models.iter().map(|model| calibration::least_memory(scene, model)).fold(0.0, f64::max)
+        scene.models.iter().map(|model| calibration::memory(scene, model)).fold(0.0, f64::max)
     };
     scenes.sort_by(|a, b| memory(b).total_cmp(&memory(a)));
     let mut in_flight = threads;

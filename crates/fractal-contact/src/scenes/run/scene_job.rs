@@ -50,7 +50,7 @@ impl Job for SceneJob {
     }
 
     fn memory(&self) -> f64 {
-        calibration::least_memory(&self.scene, self.unit.numerics(&self.scene))
+        calibration::memory(&self.scene, self.unit.numerics(&self.scene))
     }
 
     fn stored_bytes(&self) -> u64 {

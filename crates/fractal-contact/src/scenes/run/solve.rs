@@ -17,6 +17,9 @@ use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
 
+/// Bytes of a solve below which the memory is not looked at.
+const SMALL: f64 = 1e7;
+
 impl ModelOnSurface {
     /// Solves the loads that `result` lacks, in their order, and passes the result to `keep` after each. A
     /// load that a model refuses has a row with the reason, and the others are solved. A path goes on from
@@ -181,6 +184,9 @@ impl ContactInHand<'_, '_> {
         let loads = requests.values.iter().map(load).collect::<contact_model::Result<Vec<Load>>>();
         let numerics = self.unit.numerics(self.scene);
         let compares = self.scene.requested.grid_error && matches!(numerics, Numerics::Bem3d(_));
+        if let Ok(loads) = &loads {
+            self.check_memory(loads)?;
+        }
         let mut comparison = None;
         if let (true, Ok(loads)) = (compares, &loads) {
             comparison = self.coarser_grids(loads)?;
@@ -232,6 +238,22 @@ impl ContactInHand<'_, '_> {
         Ok(())
     }
 
+    /// Refuses loads that need more memory than there is: a solve that is refused memory ends the process.
+    ///
+    /// # Errors
+    /// [`Error::Run`] with both sizes.
+    fn check_memory(&self, loads: &[Load]) -> Result<()> {
+        let required = loads.iter().filter_map(|&load| self.contact.required_memory(load));
+        let Some(most) = required.max_by(|a, b| a.bytes.total_cmp(&b.bytes)) else { return Ok(()) };
+        // To ask the system would take a part of the time of a small solve.
+        if most.bytes < SMALL {
+            return Ok(());
+        }
+        let what = format!("{}, surface {}", self.unit.numerics(self.scene).name(), self.unit.surface);
+        let checked = runs::check_memory(most.what, most.bytes);
+        Ok(checked.map_err(runs::Error::model(what))?)
+    }
+
     /// All loads on coarser grids, also of a run that goes on, because each state there begins with the one
     /// before it. `None` where it was stopped.
     fn coarser_grids(&self, loads: &[Load]) -> Result<Option<GridComparison>> {
@@ -261,6 +283,9 @@ impl ContactInHand<'_, '_> {
         for index in self.result.states.len()..self.scene.request.count() {
             let step = step_of(index, &self.result.states);
             let normal = step.as_ref().ok().map(|step| step.load.normal);
+            if let Ok(step) = &step {
+                self.check_memory(&[step.load])?;
+            }
             let advanced = step.and_then(|step| match self.contact.advance_until(step, self.stop) {
                 Err(contact_model::Error::Stopped { .. }) => Ok(None),
                 Ok(state) => Ok(Some((largest.enter(step.load.normal, state), true))),

@@ -176,8 +176,8 @@ fn random_states_are_those_of_a_dense_reference() {
             outer_iterations: 200,
             factor: number % 2 == 0,
         };
-        let guess: Guess = cold_start(&mut problem, target, limits, &never);
-        let solved = solve(&mut problem, target, guess, limits, &never);
+        let guess: Guess = cold_start(&mut problem, target, limits, &never).unwrap();
+        let solved = solve(&mut problem, target, guess, limits, &never).unwrap();
         assert_eq!(solved.status, Status::Converged, "{number}: {target:?} {:?}", solved.residuals);
         let Some((p, d)) = dense.solution(kinds(&dense, &solved)) else { continue };
         compared += 1;
