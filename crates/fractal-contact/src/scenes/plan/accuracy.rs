@@ -202,7 +202,7 @@ fn chosen_words(chosen: &Candidate, error: &str) -> String {
 
 fn none_found(scene: &SceneFile, requested: RequestedAccuracy, reason: &str) -> Diagnostic {
     let help = "`accuracy = \"best\"` takes what the `budget` and the `memory` reach; or ask for larger loads, fewer \
-                outputs, less, or a larger `budget` or `memory`";
+                outputs, a larger error, or a larger `budget` or `memory`";
     let message = format!("{}: {reason}", asked(requested.target));
     scene.at_accuracy(Diagnostic::new(message).with_help(help))
 }
