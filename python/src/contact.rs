@@ -283,7 +283,7 @@ impl PyContact {
     /// force, approach, mean_pressure, mean_gap : float
     ///     Exactly one of them. ``mean_pressure`` is over Lx Ly, ``mean_gap`` for periodic boundaries.
     /// stop : threading.Event, optional
-    ///     Set by another thread, it stops the solve between two iterations.
+    ///     Set by another thread, it stops the solve, also within an iteration.
     ///
     /// Returns
     /// -------

@@ -62,7 +62,7 @@ mod _core {
     #[pymodule_export]
     use crate::scene::{PyScene, PySurface, check_effects, effect_keys, height_map, scene, surface};
     #[pymodule_export]
-    use crate::scenes::{PySceneFile, press_scene, run_scene};
+    use crate::scenes::{PySceneFile, check_pressed_map, press_scene, run_scene};
     #[pymodule_export]
     use crate::state::{PyCertificate, PyContactState};
     #[pymodule_export]

@@ -1,16 +1,17 @@
 //! Scene files.
 
 use crate::errors::{of_scene, of_values, stopped};
+use crate::memory;
 use crate::pool::{self, StopToken};
 use crate::quantities::is_count;
 use crate::state;
 use crate::toml_text::{toml_text, toml_value};
-use fractal_contact::Table;
 use fractal_contact::Value;
 use fractal_contact::runs::Progress;
 use fractal_contact::scenes::{
     Error, Options, Plan, Question, SceneFile as RustSceneFile, SceneOutcome, System, run,
 };
+use fractal_contact::{Cells, Table};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
@@ -167,6 +168,20 @@ impl PySceneFile {
     fn __repr__(&self) -> String {
         format!("<SceneFile: {} by {}>", self.0.surface.describe(self.0.system), self.models().join(", "))
     }
+}
+
+/// ``OutOfMemory`` where there is no room for the heights of a map that is pressed: as an array, in its file, and as
+/// they are solved. The solves are looked at when the scene is run.
+#[pyfunction]
+pub fn check_pressed_map(py: Python<'_>, columns: usize, rows: usize) -> PyResult<()> {
+    /// Bytes for each point.
+    const HEIGHTS: f64 = 64.0;
+    memory::check_grid(
+        py,
+        "the contact of a map",
+        Cells { columns, rows },
+        HEIGHTS * columns as f64 * rows as f64,
+    )
 }
 
 /// The scene of a map that is pressed, of its keys in their order.

@@ -204,3 +204,21 @@ def test_numbers_are_those_of_the_program(tmp_path):
                 else row[name] == value
             )
     assert ran.stdout.split("\n\n")[0].strip() in pressed.summary or pressed.summary.strip() in ran.stdout
+
+
+def test_a_misspelt_unit_is_told():
+    for text, told in [("1 Mpa", "is it mPa or MPa"), ("1,5 MPa", "decimal comma")]:
+        with pytest.raises(ValueError, match=told):
+            fc.press(HEIGHTS, "1 mm", "115 GPa", unit="nm", mean_pressure=text)
+
+
+def test_equal_calls_are_equal_and_their_page_has_the_name_of_the_map():
+    one, other = (fc.press(HEIGHTS, 1.0, 1.0, mean_pressure=1e-3) for _ in range(2))
+    assert one == other
+    assert b"<title>map" in one.html
+
+
+def test_a_map_without_room_is_refused_before_it_is_copied():
+    huge = np.broadcast_to(0.0, (2**17, 2**17))
+    with pytest.raises(fc.OutOfMemory, match="the contact of a map of 131072 columns x 131072 rows"):
+        fc.press(huge, 1.0, 1.0, mean_pressure=1e-3)

@@ -388,7 +388,7 @@ impl Friction {
             None => Err(Error::domain(
                 "second Dundurs constant of the bodies",
                 beta,
-                "0, or friction whose coupling is given as neglected or full",
+                "0, or friction that says its coupling, none or full",
             )),
             stated => Ok(stated),
         }

@@ -61,8 +61,9 @@ const BELOW: f64 = 60.0;
 const BAR: f64 = 18.0;
 /// From the map to the bar of colours or the classes.
 const BESIDE: f64 = 24.0;
-/// Side of the enlarged largest contact.
+/// Side of the enlarged largest contact, and the least side of its frame on the map.
 const INSET: f64 = 220.0;
+const FRAME: f64 = 16.0;
 /// The bar is at least as high as its labels need.
 const SHORTEST_BAR: f64 = 160.0;
 /// Size of the words at an axis.
@@ -236,11 +237,14 @@ impl FieldPicture<'_> {
         let [wide, high] = [pixels.columns, pixels.rows].map(|count| PIXEL * count as f64);
         let place = [left + w + RIGHT + BESIDE, top, wide, high];
         drawing.image(place, enlarged.image(pixels, |v| scale.colour(v)).into_flattened(), pixels.columns);
+        // The frame on the map hides nothing of a window of a few pixels.
+        let [wide_on_map, high_on_map] = [across * cells.columns as f64, up * cells.rows as f64];
+        let room = (0.5 * (FRAME - wide_on_map.min(high_on_map))).max(0.0);
         let on_map = [
-            left + across * columns.start as f64,
-            top + h - up * rows.end as f64,
-            across * cells.columns as f64,
-            up * cells.rows as f64,
+            left + across * columns.start as f64 - room,
+            top + h - up * rows.end as f64 - room,
+            wide_on_map + 2.0 * room,
+            high_on_map + 2.0 * room,
         ];
         for place in [place, on_map] {
             // Seen on dark and on light colours.

@@ -27,6 +27,7 @@ __all__ = [
     "Surface",
     "channels",
     "check_effects",
+    "check_pressed_map",
     "combinations",
     "effect_keys",
     "ensemble",
@@ -752,7 +753,7 @@ class Contact:
         force, approach, mean_pressure, mean_gap : float
                 Exactly one of them. ``mean_pressure`` is over Lx Ly, ``mean_gap`` for periodic boundaries.
         stop : threading.Event, optional
-                Set by another thread, it stops the solve between two iterations.
+                Set by another thread, it stops the solve, also within an iteration.
 
         Returns
         -------
@@ -1186,6 +1187,11 @@ def write_surface(path: Path, map: HeightMap, metres: bool) -> None:
 
 def notes_of_python(notes: list[str]) -> list[str]:
     """Notes on the states of a scene, with remedies in the words of Python."""
+
+def check_pressed_map(columns: int, rows: int) -> None:
+    """``OutOfMemory`` where there is no room for the heights of a map that is pressed: as an array, in its file, and as
+    they are solved. The solves are looked at when the scene is run.
+    """
 
 def press_scene(keys: list[tuple[str, Any, bool]], si: bool, path: Path) -> SceneFile:
     """The scene of a map that is pressed, of its keys in their order.

@@ -299,7 +299,7 @@ def sweep(
         two loads, to a twentieth of a step or as the cells allow. The scene has to compute the area. The loads between
         are found by two to three solves each.
     stop : threading.Event, optional
-        Set by another thread, it stops the solve between two iterations: `Stopped`.
+        Set by another thread, it stops the solve, also within an iteration: `Stopped`.
 
     Returns
     -------

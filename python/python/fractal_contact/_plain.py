@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import difflib
 import inspect
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import fields
 from typing import Any, TypeVar
 
@@ -66,9 +66,10 @@ def same(one: Any, other: Any) -> bool:
     return bool(one == other)
 
 
-def same_fields(one: Any, other: Any) -> bool:
-    """The same for the fields of two dataclasses of one class."""
-    return all(same(getattr(one, field.name), getattr(other, field.name)) for field in fields(one))
+def same_fields(one: Any, other: Any, but: Collection[str] = ()) -> bool:
+    """The same for the fields of two dataclasses of one class, without those of some names."""
+    names = [field.name for field in fields(one) if field.name not in but]
+    return all(same(getattr(one, name), getattr(other, name)) for name in names)
 
 
 Function = TypeVar("Function", bound=Callable[..., Any])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import re
 import tempfile
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -17,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _arrays, _core, _html
 from ._core import HeightMap, SceneFile
 from ._effects import Effects
-from ._files import ReadSurface, SceneOutcome, _words, run_scene, si
+from ._files import ReadSurface, SceneOutcome, _words, run_scene
 from ._inputs import AnyBody, Body, _body
 from ._models import StopToken
 from ._numbers import is_iterable, number
@@ -41,7 +42,8 @@ class Pressed:
 
     Numbers that a state does not have are NaN. Units are those in which the problem was given: SI units where a unit
     was. ``results`` has every column of the program's ``results.csv``, so that ``pandas.DataFrame(pressed.results)`` is
-    a table. Two of them compare with ``==`` as wholes, to one truth value.
+    a table. Two of them compare with ``==`` as wholes, to one truth value, but for the page, which has the times of its
+    run.
 
     Parameters
     ----------
@@ -74,7 +76,8 @@ class Pressed:
     html: bytes = field(repr=False)
 
     def __eq__(self, other: object) -> bool:
-        return same_fields(self, other) if isinstance(other, Pressed) else NotImplemented
+        # The page has the times of its run.
+        return same_fields(self, other, but=("html",)) if isinstance(other, Pressed) else NotImplemented
 
     def __repr__(self) -> str:
         notes = "".join(f"note: {note}\n" for note in self.notes)
@@ -324,7 +327,9 @@ def press(
     known = {name: value for name, value in _words(options).items() if value is not None}
     surface.update(detrend=detrend, **known)
     with tempfile.TemporaryDirectory(prefix="fractal-contact-") as temporary:
-        folder = Path(temporary if out is None else out)
+        # The report is called by the name of its folder.
+        name = Path(heights).stem if isinstance(heights, str | PathLike) else "map"
+        folder = Path(temporary) / name if out is None else Path(out)
         folder.mkdir(parents=True, exist_ok=True)
         _check_folder(folder)
         surface.update(_placed(heights, surface, folder, in_si))
@@ -364,7 +369,7 @@ def _check_folder(folder: Path) -> None:
 
 
 def _has_unit(value: Any) -> bool:
-    """Whether a text in a value is a number with a unit, or several with " x " between them."""
+    """Whether a text in a value is a number with a unit, which may be misspelt, or several with " x " between them."""
     if isinstance(value, str):
         return all(map(_is_quantity, value.split(" x ")))
     if isinstance(value, Mapping):
@@ -376,14 +381,8 @@ def _is_quantity(text: str) -> bool:
     try:
         float(text)
     except ValueError:
-        pass
-    else:
-        return False
-    try:
-        si(text)
-    except ValueError:
-        return False
-    return True
+        return re.match(r"\s*[-+]?\.?\d", text) is not None
+    return False
 
 
 def _values(values: Any, name: str) -> list[float | str]:
@@ -447,6 +446,9 @@ def _placed(heights: Any, surface: dict[str, Any], folder: Path, in_si: bool) ->
             pass
         return {"path": str(Path(heights).absolute())}
     map_ = heights.heights if isinstance(heights, ReadSurface) else heights
+    shape = np.shape(map_) if isinstance(map_, np.ndarray) else getattr(map_, "shape", ())
+    if len(shape) == 2:
+        _core.check_pressed_map(shape[1], shape[0])
     more: dict[str, Any] = {"path": ARRAY}
     if isinstance(map_, HeightMap):
         for name in ("size", "cell", "unit"):

@@ -270,6 +270,11 @@ pub(crate) fn jobs_in_memory(scene: &SceneFile, most: usize) -> Result<usize> {
     for numerics in &scene.models {
         let name = if numerics.boundary_elements().is_some() { "cells" } else { "elements" };
         let memory = memory(scene, numerics);
+        if numerics.boundary_elements().is_some() {
+            let Cells { columns, rows } = cells(scene, numerics);
+            let what = format!("{} on {columns} x {rows} cells", numerics.name());
+            runs::check_memory(what, memory).map_err(runs::Error::model("the plan"))?;
+        }
         jobs = runs::threads_for_memory(jobs, memory, name, numerics.size())?;
     }
     Ok(jobs)
