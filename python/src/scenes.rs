@@ -170,8 +170,9 @@ impl PySceneFile {
     }
 }
 
-/// ``OutOfMemory`` where there is no room for the heights of a map that is pressed: as an array, in its file, and as
-/// they are solved. The solves are looked at when the scene is run.
+/// ``OutOfMemory`` where there is no room for the heights of a map: as an array, in its file, and as they are solved.
+///
+/// The solves are looked at when the scene is run.
 #[pyfunction]
 pub fn check_pressed_map(py: Python<'_>, columns: usize, rows: usize) -> PyResult<()> {
     /// Bytes for each point.

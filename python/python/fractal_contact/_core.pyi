@@ -1189,8 +1189,9 @@ def notes_of_python(notes: list[str]) -> list[str]:
     """Notes on the states of a scene, with remedies in the words of Python."""
 
 def check_pressed_map(columns: int, rows: int) -> None:
-    """``OutOfMemory`` where there is no room for the heights of a map that is pressed: as an array, in its file, and as
-    they are solved. The solves are looked at when the scene is run.
+    """``OutOfMemory`` where there is no room for the heights of a map: as an array, in its file, and as they are solved.
+
+    The solves are looked at when the scene is run.
     """
 
 def press_scene(keys: list[tuple[str, Any, bool]], si: bool, path: Path) -> SceneFile:
