@@ -170,7 +170,7 @@ impl PySceneFile {
     }
 }
 
-/// ``OutOfMemory`` where there is no room for the heights of a map: as an array, in its file, and as they are solved.
+/// ``OutOfMemory`` where there is no room for the heights of a map as an array, in its file and in the solver.
 ///
 /// The solves are looked at when the scene is run.
 #[pyfunction]

@@ -263,6 +263,12 @@ def test_names_of_dimensions_decide():
     for dims in (("x", "z"), ("x", "column"), ("lat", "lon")):
         with pytest.raises(ValueError, match=f"'{dims[0]}' and '{dims[1]}': expected x and y"):
             fc.HeightMap(xarray.DataArray(h, dims=dims), size=1.0)
+    # Coordinates that fall, as those of images do, and that are no grid.
+    falling = xarray.DataArray(h[::-1], dims=("y", "x"), coords={"y": [2.5, 1.5, 0.5], "x": [0.5, 1.5, 2.5, 3.5]})
+    map_ = fc.HeightMap(falling, size=(4.0, 3.0))
+    assert np.array_equal(map_.heights, h) and "turned round along 'y'" in map_.metadata["axes"]
+    with pytest.raises(ValueError, match="the coordinates along 'y' are not in equal steps"):
+        fc.HeightMap(falling.assign_coords(y=[0.0, 1.0, 3.0]), size=1.0)
     # There and back.
     map_ = ROUGH.height_map((8, 4), seed=1)
     for given in (map_.to_xarray(), map_.to_xarray().transpose("x", "y")):

@@ -32,11 +32,37 @@ def by_name(values: Any) -> tuple[Any, str | None]:
             "which; array.rename(...) names them, and array.values has none, for [row, column]"
         )
     if axes == ["y", "x"]:
-        return values, f"as given: rows along {names[0]!r}, columns along {names[1]!r}"
-    return values.transpose(names[1], names[0]), (
-        f"transposed by the names of the dimensions: given as ({names[0]!r}, {names[1]!r}), "
-        f"rows are along {names[1]!r} and columns along {names[0]!r}"
-    )
+        named, done = values, f"as given: rows along {names[0]!r}, columns along {names[1]!r}"
+    else:
+        named, done = (
+            values.transpose(names[1], names[0]),
+            (
+                f"transposed by the names of the dimensions: given as ({names[0]!r}, {names[1]!r}), "
+                f"rows are along {names[1]!r} and columns along {names[0]!r}"
+            ),
+        )
+    for name in names:
+        if falls(named, name):
+            named = named[{name: slice(None, None, -1)}]
+            done += f"; turned round along {name!r}, whose coordinates fall"
+    return named, done
+
+
+def falls(values: Any, name: Any) -> bool:
+    """Whether the coordinates along a dimension fall; those that are in no equal steps are an error."""
+    coordinates = getattr(values, "coords", {})
+    places = np.asarray(coordinates[name]) if name in coordinates else np.empty(0)
+    if places.ndim != 1 or places.size < 2 or places.dtype.kind not in "iuf":
+        return False
+    steps = np.diff(places.astype(np.float64))
+    mean = steps.mean()
+    # Coordinates in files are often rounded.
+    if not (np.abs(steps - mean) <= 0.01 * abs(mean)).all() or mean == 0:
+        raise ValueError(
+            f"the coordinates along {name!r} are not in equal steps: expected a regular grid; "
+            "array.drop_vars(...) leaves them out"
+        )
+    return bool(mean < 0)
 
 
 def heights(values: ArrayLike, undefined: str) -> tuple[NDArray[np.float64], bool, str | None]:

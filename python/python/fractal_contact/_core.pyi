@@ -1189,7 +1189,7 @@ def notes_of_python(notes: list[str]) -> list[str]:
     """Notes on the states of a scene, with remedies in the words of Python."""
 
 def check_pressed_map(columns: int, rows: int) -> None:
-    """``OutOfMemory`` where there is no room for the heights of a map: as an array, in its file, and as they are solved.
+    """``OutOfMemory`` where there is no room for the heights of a map as an array, in its file and in the solver.
 
     The solves are looked at when the scene is run.
     """
