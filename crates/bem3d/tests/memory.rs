@@ -72,8 +72,14 @@ fn scene(boundary: Boundary, change: impl FnOnce(&mut Scene)) -> Scene {
     scene
 }
 
-/// What is told of a solve over the peak of what it takes, load by load from no contact.
+/// What is told of a solve over the peak of what it takes, load by load from no contact, on one thread: each further
+/// thread that takes part in a factor reserves room for products of matrices of its own.
 fn told_over_peak(scene: &Scene, model: Bem3d, force_bar: &[f64]) -> Vec<f64> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    pool.install(|| told_over_peak_here(scene, model, force_bar))
+}
+
+fn told_over_peak_here(scene: &Scene, model: Bem3d, force_bar: &[f64]) -> Vec<f64> {
     let mut contact = model.prepare(scene, 7).unwrap();
     let mut ratios = Vec::new();
     for &force_bar in force_bar {

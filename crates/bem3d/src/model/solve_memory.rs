@@ -20,7 +20,8 @@ const ATTRACTION: f64 = 200.0;
 const SCATTERED: f64 = 2.2;
 /// A Cholesky factor, bytes for each square of its cells ...
 const FACTOR: f64 = 16.0;
-/// ... and what products of matrices reserve once, twice the largest cache: of 32 MB.
+/// ... and what products of matrices reserve once on each thread, here on one, twice the largest cache: of 32 MB. It is
+/// address space, of which little is touched.
 const PRODUCTS: f64 = 6.8e7;
 /// Number of cells whose factor needs none of that.
 const FEWEST: usize = 64;
