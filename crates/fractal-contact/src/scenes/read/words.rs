@@ -131,6 +131,10 @@ pub(crate) fn refusal(scene: &SceneFile, error: &Error) -> String {
 pub(crate) fn refusal_of_load(scene: &SceneFile, load: Option<NormalLoad>, error: &Error) -> String {
     let told = refusal(scene, error);
     let Error::OutOfRange { name, value, min, max } = error else { return told };
+    // The bound in the load's unit follows from their ratio, which a load of zero does not have.
+    if *value == 0.0 {
+        return told;
+    }
     let size = scene.surface.size();
     let (load, unit) = match load {
         Some(NormalLoad::Force(force)) if name.starts_with("mean pressure over") => {
