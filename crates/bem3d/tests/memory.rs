@@ -17,7 +17,7 @@ static PEAK: AtomicUsize = AtomicUsize::new(0);
 /// The count is of the process: one measurement at a time.
 static ALONE: Mutex<()> = Mutex::new(());
 
-/// What is told of contact nearly everywhere is at most this multiple of the peak.
+/// In contact nearly everywhere, the estimated memory is at most this multiple of the measured peak.
 const AT_MOST: f64 = 1.5;
 /// The same with effects, whose need depends on more than the size.
 const WITH_EFFECTS: f64 = 2.0;
@@ -72,8 +72,8 @@ fn scene(boundary: Boundary, change: impl FnOnce(&mut Scene)) -> Scene {
     scene
 }
 
-/// What is told of a solve over the peak of what it takes, load by load from no contact, on one thread: each further
-/// thread that takes part in a factor reserves room for products of matrices of its own.
+/// The estimated memory of a solve divided by its measured peak, load by load from no contact, on one thread: each
+/// further thread that takes part in a factor reserves room for products of matrices of its own.
 fn told_over_peak(scene: &Scene, model: Bem3d, force_bar: &[f64]) -> Vec<f64> {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
     pool.install(|| told_over_peak_here(scene, model, force_bar))
@@ -123,7 +123,7 @@ fn contact_nearly_everywhere() {
             // The second load begins with the first one.
             let loads: &[f64] = if cells < 1000 { &[100.0, 120.0] } else { &[100.0] };
             let ratios = told_over_peak(&scene(boundary, |_| ()), model, loads);
-            // What is left of the first load is told again for the second one.
+            // The estimate of the second load counts again what the first one left in memory.
             assert!(ratios[0] <= AT_MOST && ratios.iter().all(|r| *r >= 1.0), "{cells} x {rows}: {ratios:?}");
         }
     }
@@ -145,7 +145,7 @@ fn light_and_middle_loads_need_no_more_than_is_told() {
     }
 }
 
-/// What makes a scene one with an effect.
+/// Adds an effect to a scene.
 type Change = fn(&mut Scene);
 
 #[test]

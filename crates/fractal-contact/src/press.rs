@@ -16,7 +16,7 @@ use surface_io::{ContentError, Dimension, Metadata, Quantity, SurfaceFile};
 /// States of the path along which a tangential force grows.
 const TANGENTIAL_STATES: usize = 8;
 
-/// What the scene of flags is called in messages, because there is no such file yet.
+/// Messages name the scene of the flags in this way, because it has no file yet.
 pub const WORDS: &str = "the scene of these flags";
 
 /// A flag that a command lacks.
@@ -378,7 +378,7 @@ fn add_output(question: &mut Question, name: &str) -> Result<(), Diagnostic> {
     };
     question.set(&format!("outputs.{name}"), value).map_err(|mistake| {
         if output.is_some() {
-            // Such as a conductance, which has keys of its own.
+            // The name is an output, so the mistake is in its value or its keys.
             return mistake;
         }
         let names: Vec<&str> = Output::ALL.iter().map(|output| output.name()).collect();

@@ -197,8 +197,8 @@ impl Plan {
         }
     }
 
-    /// The map as it is solved, without the exponent: that of the statistics has an interval, knows where the
-    /// spectrum ends, and is the one that is told.
+    /// The map as it is solved, without the exponent: the reports give the exponent of the statistics instead,
+    /// which has an interval and knows where the spectrum ends.
     pub(crate) fn as_solved(&self) -> Option<surface_io::Description> {
         Some(self.prepared.clone()?.without_fit())
     }

@@ -517,7 +517,7 @@ pub fn meant_by_flag(flag: &str) -> Option<String> {
     other_words::meant_by_flag(flag).or_else(set)
 }
 
-/// What was meant by a name that is no output, such as something that is not computed.
+/// Advice for a name that is no output: the output that it probably means, or that there is no such output.
 pub fn meant_by_output(name: &str) -> Option<String> {
     other_words::meant("outputs", name)
 }

@@ -48,7 +48,7 @@ pub enum Warning {
 }
 
 impl Warning {
-    /// All of them, in the order in which they are told.
+    /// All warnings, in the order in which they are printed.
     pub const ALL: [Self; 9] = [
         Self::FewCells,
         Self::OneCell,
