@@ -277,6 +277,10 @@ impl PeriodicLaw for PressureDiffusion {
     }
 
     fn pressure(&self, gap: f64) -> Result<f64> {
+        if gap <= 0.0 {
+            let expected = "a positive number: in this theory no finite pressure closes all gaps";
+            return Err(Error::domain("mean gap", gap, expected));
+        }
         let value = |log: f64| self.gap(log.exp() * self.slope).map_or(f64::NAN, |u| u - gap);
         let high = CLOSED.ln();
         if value(high) >= 0.0 {
@@ -524,7 +528,7 @@ mod tests {
         let slope = Spectrum::new(&surface(0.8, None, 100.0)).unwrap().rms_slope().unwrap();
         assert!(contact.solve(Load::force(15.0 * slope)).is_ok());
         assert!(matches!(contact.solve(Load::force(50.0 * slope)), Err(Error::OutOfRange { .. })));
-        assert!(matches!(contact.solve(Load::mean_gap(0.0)), Err(Error::OutOfRange { .. })));
+        assert!(matches!(contact.solve(Load::mean_gap(0.0)), Err(Error::Domain { .. })));
         assert!(matches!(contact.solve(Load::mean_gap(1e4)), Err(Error::OutOfRange { .. })));
         for gamma in [0.0, 1.1, f64::NAN] {
             assert!(Persson { gamma }.prepare(&scene(surface(0.8, None, 100.0)), 0).is_err());

@@ -164,9 +164,14 @@ impl fmt::Display for Error {
             }
             Self::Unsupported { model, what } => write!(f, "the model {model} does not support {what}"),
             Self::OutOfRange { name, value, min, max } => {
-                let [min, max] = [min, max].map(|end| shown(*end, &[]));
-                let value = shown(*value, &[&min, &max]);
-                write!(f, "{name} = {value} is outside [{min}, {max}], the range in which the model holds")
+                let [low, high] = [min, max].map(|end| shown(*end, &[]));
+                let value = shown(*value, &[&low, &high]);
+                write!(f, "{name} = {value} is ")?;
+                match (min.is_finite(), max.is_finite()) {
+                    (true, false) => write!(f, "below {low}, the smallest value for which the model holds"),
+                    (false, true) => write!(f, "above {high}, the largest value for which the model holds"),
+                    _ => write!(f, "outside [{low}, {high}], the range in which the model holds"),
+                }
             }
             Self::OutOfMemory { what, bytes, available } => {
                 write!(f, "{what}: needs about {} of memory, ", Gigabytes(*bytes))?;
@@ -270,6 +275,8 @@ mod tests {
         let beyond = 1.0 + f64::EPSILON;
         let error = Error::OutOfRange { name: "x".into(), value: beyond, min: 0.0, max: 1.0 };
         assert!(error.to_string().starts_with("x = 1.0000000000000002 is outside [0, 1]"), "{error}");
+        let below = Error::OutOfRange { name: "x".into(), value: 0.0, min: 1.5, max: f64::INFINITY };
+        assert_eq!(below.to_string(), "x = 0 is below 1.5, the smallest value for which the model holds");
         let error = Error::domain("x", beyond, "a number in [0, 1]");
         assert!(error.to_string().starts_with("x = 1.0000000000000002: expected"), "{error}");
     }

@@ -288,17 +288,41 @@ fn maps_that_theories_have_no_meaning_for_are_refused() {
     assert!(refused(&drawn(64), &only).contains("nothing here is random"));
 }
 
-/// A pressure beyond a theory is told in the number of the theory and in pascals.
-#[test]
-fn a_pressure_beyond_a_theory_is_told_in_pascals() {
-    let text = "[scene]\nmodels = [\"persson\"]\ncontact_modulus = \"1 GPa\"\nmean_pressure = [\"1 kPa\", \"1 TPa\"]\n[scene.surface]\n\
-        kind = \"self_affine\"\nhurst = 0.8\nside = \"1 mm\"\nrms_height = \"2 um\"\nroll_off_wavelength = \"0.2 mm\"\n\
-        shortest_wavelength = \"20 um\"\n[effects]\nboundary = \"periodic\"\n[outputs]\narea = true\n[sampling]\nseed = 1\n";
-    let scene = SceneFile::parse("scene.toml".as_ref(), text.into()).unwrap_or_else(|e| panic!("{e}"));
+/// The notes of two theories on a random surface with an rms height of 2 um under such loads.
+fn notes_under(loads: &str) -> String {
+    let text = format!(
+        "[scene]\nmodels = [\"persson\", \"greenwood_williamson\"]\ncontact_modulus = \"1 GPa\"\n{loads}\n[scene.surface]\n\
+         kind = \"self_affine\"\nhurst = 0.8\nside = \"1 mm\"\nrms_height = \"2 um\"\nroll_off_wavelength = \"0.2 mm\"\n\
+         shortest_wavelength = \"20 um\"\n[effects]\nboundary = \"periodic\"\n[outputs]\narea = true\n[sampling]\nseed = 1\n"
+    );
+    let scene = SceneFile::parse("scene.toml".as_ref(), text).unwrap_or_else(|e| panic!("{e}"));
     let dir = tempfile::tempdir().unwrap();
     let options = Options { out: dir.path().into(), threads: 1, fresh: false };
     let outcome = run(&scene, &Plan::new(&scene).unwrap(), &options, &Silent, &contact_model::never).unwrap();
-    let notes = outcome.notes.join("\n");
+    outcome.notes.join("\n")
+}
+
+/// A mean gap of zero has no ratio to the smallest one of a theory, and is told with it in metres all the same.
+#[test]
+fn a_mean_gap_of_zero_is_refused_in_metres() {
+    let told = |gap: &str| notes_under(&format!("mean_gap = [\"6 um\", \"{gap}\"]"));
+    let (zero, one) = (told("0 m"), told("1 nm"));
+    assert!(zero.contains("persson: mean gap = 0 m: expected a positive number"), "{zero}");
+    assert!(!zero.contains("inf]") && !zero.contains("NaN"), "{zero}");
+    let smallest = |notes: &str, gap: &str| {
+        let refusal =
+            notes.lines().find(|line| line.starts_with("greenwood_williamson: mean gap over rms height"));
+        let (_, smallest) = refusal?.split_once(&format!(": here {gap}, and at least "))?;
+        Some(smallest.to_owned())
+    };
+    assert_eq!(smallest(&zero, "0 m").as_deref(), Some("1.392 um in this model"), "{zero}");
+    assert_eq!(smallest(&one, "1 nm"), smallest(&zero, "0 m"), "{one}");
+}
+
+/// A pressure beyond a theory is told in the number of the theory and in pascals.
+#[test]
+fn a_pressure_beyond_a_theory_is_told_in_pascals() {
+    let notes = notes_under("mean_pressure = [\"1 kPa\", \"1 TPa\"]");
     assert!(notes.contains("persson: mean pressure over E* g/sqrt(2)"), "{notes}");
     let (_, limit) = notes.split_once(": here 1 TPa, and at most ").unwrap_or_else(|| panic!("{notes}"));
     assert!(limit.split(" in this model").next().is_some_and(|limit| limit.ends_with(" GPa")), "{notes}");

@@ -113,9 +113,9 @@ pub(crate) fn refusal(scene: &SceneFile, error: &Error) -> String {
     };
     let [value, low, high] = told((4..17).find(apart).unwrap_or(17));
     let range = match (min.is_finite(), max.is_finite()) {
-        (true, true) => format!("outside {low} to {high}"),
-        (true, false) => format!("below {low}"),
-        _ => format!("above {high}"),
+        (true, false) => format!("below {low}, the smallest value for which the model holds"),
+        (false, true) => format!("above {high}, the largest value for which the model holds"),
+        _ => format!("outside {low} to {high}, the range in which the model holds"),
     };
     let hardness = match scene.effects.hardness {
         Hardness::Limit { pressure } if name.contains("hardness") => {
@@ -123,28 +123,33 @@ pub(crate) fn refusal(scene: &SceneFile, error: &Error) -> String {
         }
         _ => String::new(),
     };
-    format!("{name} = {value} is {range}, the range in which the model holds{hardness}")
+    format!("{name} = {value} is {range}{hardness}")
 }
 
-/// Why a model refuses this load. A theory counts it over a scale of the surface; the load itself and the largest
-/// or smallest one of the theory stand beside that number.
-pub(crate) fn refusal_of_load(scene: &SceneFile, load: Option<NormalLoad>, error: &Error) -> String {
+/// Why a model refuses this load of a surface with this rms height. A theory counts it over a scale of the surface;
+/// the load itself and the largest or smallest one of the theory stand beside that number.
+pub(crate) fn refusal_of_load(
+    scene: &SceneFile,
+    rms_height: Option<f64>,
+    load: Option<NormalLoad>,
+    error: &Error,
+) -> String {
     let told = refusal(scene, error);
     let Error::OutOfRange { name, value, min, max } = error else { return told };
-    // The bound in the load's unit follows from their ratio, which a load of zero does not have.
-    if *value == 0.0 {
-        return told;
-    }
     let size = scene.surface.size();
-    let (load, unit) = match load {
-        Some(NormalLoad::Force(force)) if name.starts_with("mean pressure over") => {
-            (force / (size.x * size.y), "Pa")
+    let (load, scale, unit) = match (load, rms_height) {
+        // The scale of a pressure follows from the load itself; a load of zero is not beyond a largest one.
+        (Some(NormalLoad::Force(force)), _) if name.starts_with("mean pressure over") && *value > 0.0 => {
+            let pressure = force / (size.x * size.y);
+            (pressure, pressure / value, "Pa")
         }
-        Some(NormalLoad::MeanGap(gap)) if name.starts_with("mean gap over") => (gap, "m"),
+        (Some(NormalLoad::MeanGap(gap)), Some(height)) if name.starts_with("mean gap over rms height") => {
+            (gap, height, "m")
+        }
         _ => return told,
     };
     let (bound, end) = if value > max { ("at most", max) } else { ("at least", min) };
-    let [load, end] = [load, load / value * end].map(|v| ascii(&amount(v, scene.system.shown(unit))));
+    let [load, end] = [load, scale * end].map(|v| ascii(&amount(v, scene.system.shown(unit))));
     format!("{told}: here {load}, and {bound} {end} in this model")
 }
 

@@ -225,9 +225,10 @@ impl ContactInHand<'_, '_> {
                 }
                 Err(other) => {
                     let normal = loads.as_ref().ok().map(|loads| loads[index].normal);
+                    let height = normalisation.height;
                     StateRecord::new(
                         index,
-                        Answer::Refused(words::refusal_of_load(self.scene, normal, &other)),
+                        Answer::Refused(words::refusal_of_load(self.scene, height, normal, &other)),
                     )
                 }
             };
@@ -314,7 +315,7 @@ impl ContactInHand<'_, '_> {
                 Ok(Some((best, false))) => missed(index, best, normalisation),
                 Err(error) => StateRecord::new(
                     index,
-                    Answer::Refused(words::refusal_of_load(self.scene, normal, &error)),
+                    Answer::Refused(words::refusal_of_load(self.scene, normalisation.height, normal, &error)),
                 ),
             };
             let failed = record.converged().is_none();
