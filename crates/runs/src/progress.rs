@@ -101,6 +101,17 @@ impl<'a> StatesInHand<'a> {
         self.tell(None);
     }
 
+    /// Reports that nothing is left to be done. A path may end before its last state, and a state may have no picture;
+    /// without this report their share of the cost would be missing.
+    pub fn finished(&self) {
+        let pictures = self.pictures.get();
+        if self.done.get() < self.all || pictures.drawn < pictures.all {
+            self.done.set(self.all);
+            self.pictures.set(Pictures { drawn: pictures.all, ..pictures });
+            self.tell(None);
+        }
+    }
+
     fn tell(&self, residual: Option<(f64, f64)>) {
         let Self { name, cost, all, done, pictures, .. } = self;
         let (done, pictures) = (done.get(), pictures.get());
@@ -122,5 +133,43 @@ impl Watch for StatesInHand<'_> {
 
     fn residual(&self, residual: f64, tolerance: f64) {
         self.tell(Some((residual, tolerance)));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Mutex;
+
+    /// Numbers of states and of pictures that are done.
+    #[derive(Default)]
+    struct Told(Mutex<Vec<[usize; 2]>>);
+
+    impl Progress for Told {
+        fn begin(&self, _: &str, _: u64) {}
+        fn advance(&self, _: u64, _: bool) {}
+        fn states(&self, job: &JobInHand<'_>) {
+            self.0.lock().unwrap().push([job.done, job.pictures.drawn]);
+        }
+        fn end(&self) {}
+    }
+
+    #[test]
+    fn a_job_without_some_states_or_pictures_ends_as_a_whole() {
+        let told = Told::default();
+        let job = |name: &str| {
+            StatesInHand::new((name.to_owned(), 10), [0, 3], &told, &contact_model::never).with_pictures(2, 4)
+        };
+        let short = job("a path of two states with one picture");
+        short.solved(2);
+        short.drew();
+        short.finished();
+        let whole = job("all states and pictures");
+        whole.solved(3);
+        whole.drew();
+        whole.drew();
+        // There is nothing new to report.
+        whole.finished();
+        assert_eq!(*told.0.lock().unwrap(), [[2, 0], [2, 1], [3, 2], [3, 0], [3, 1], [3, 2]]);
     }
 }

@@ -119,7 +119,7 @@ impl SceneJob {
         let mut keeper = Keeper::new(store, checkpoint, progress, self.name(), &told);
         let of = SceneInFolder { scene: &self.scene, lines: &self.lines, out: &self.out };
         let mut result = self.unit.solve(of, begun, &mut keeper, &told)?;
-        let mut drawn = Vec::new();
+        let (is_solved, mut drawn) = (result.complete, Vec::new());
         if self.draws {
             let start = Instant::now();
             let (scene, out) = (&*self.scene, &*self.out);
@@ -129,6 +129,9 @@ impl SceneJob {
             result.seconds += start.elapsed().as_secs_f64();
         } else {
             result.complete = false;
+        }
+        if is_solved {
+            told.finished();
         }
         keeper.finish(&result, !drawn.is_empty())?;
         for file in drawn {
