@@ -14,9 +14,17 @@ const SKEWNESS: f64 = 0.5;
 const KURTOSIS: f64 = 1.0;
 /// Share of the longest waves in the variance of heights from which the map is a sample of one.
 const LONGEST: f64 = 0.5;
-/// Share of a plane in the variance of heights from which a tilt explains edges, long waves and directions:
-/// that of a tilt as large as the rms height of the rest.
+/// Share of a plane in the variance of heights from which a tilt explains edges, long waves and directions: that of
+/// a plane that rises across the map by the rms height of the rest. The variance of a plane is a twelfth of the
+/// square of its rise.
 const TILTED: f64 = 1.0 / 13.0;
+
+/// Whether a map is tilted. The waves of a periodic map, whose opposite edges match, have a plane as well, which is
+/// no tilt.
+pub(crate) fn is_tilted(edges: &MapEdges) -> bool {
+    !edges.match_each_other() && edges.tilt > TILTED
+}
+
 /// The map of a scene, as theories see it.
 pub(crate) struct Assumptions {
     /// Of the defined points, so that a hole or a tilt, which leave no statistics, hide no edge.
@@ -80,9 +88,7 @@ impl Assumptions {
         let periodic = scene.effects.boundary == Boundary::Periodic;
         let concerned = |m: &Numerics| m.is_statistical() || (periodic && m.boundary_elements().is_some());
         // One cause is said once; a point that stands out is said of the map itself.
-        // The waves of a periodic map tilt it too.
-        let matching = edges.match_each_other();
-        let tilted = !matching && edges.tilt > TILTED;
+        let (matching, tilted) = (edges.match_each_other(), is_tilted(edges));
         let message = format!(
             "the map is tilted: {:.0} % of the variance of heights is a plane, which makes opposite edges differ by {:.1} times the largest step inside",
             100.0 * edges.tilt,

@@ -9,7 +9,7 @@ pub(crate) mod model_on_surface;
 pub(crate) mod scene_plan;
 
 pub(crate) use accuracy::{Candidate, ErrorsOfStates, choose, within};
-pub(crate) use assumptions::Assumptions;
+pub(crate) use assumptions::{Assumptions, is_tilted};
 pub(crate) use cost::Cost;
 pub(crate) use grid_comparison::{GridComparison, GridErrors, RMS_SLOPE, compared, on_grid, solved_map};
 pub(crate) use model_on_surface::{FORMAT, ModelOnSurface, probe};

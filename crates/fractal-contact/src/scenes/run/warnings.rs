@@ -1,6 +1,6 @@
 //! Warnings on states that may be wrong although they are solved to the requested tolerance, with remedies.
 
-use crate::scenes::plan::{GridErrors, within};
+use crate::scenes::plan::{GridErrors, is_tilted, within};
 use crate::scenes::read::{SceneFile, SceneSurface, amount, number};
 use contact_model::units::{ascii, rounded};
 use contact_model::{ContactState, Coupling, Friction, Hardness, Scene, Surface};
@@ -186,7 +186,7 @@ impl Warning {
             }
         };
         let advice = match self {
-            Self::Edge if !is_tilted(scene) => Self::EDGE_WITHOUT_TILT,
+            Self::Edge if !has_tilted_map(scene) => Self::EDGE_WITHOUT_TILT,
             other => other.advice(),
         };
         format!("{what} {advice}")
@@ -285,12 +285,10 @@ impl StateNotes {
     }
 }
 
-/// Whether a plane is a part of the heights of a map that changes its contact.
-fn is_tilted(scene: &SceneFile) -> bool {
-    /// Share of the plane in the variance of heights: a tilt as large as a quarter of the roughness.
-    const TILTED: f64 = 1.0 / 17.0;
+/// Whether the map of a scene is tilted, as far as it has one.
+fn has_tilted_map(scene: &SceneFile) -> bool {
     let edges = scene.surface.given_map().and_then(|map| MapEdges::new(map).ok());
-    edges.is_some_and(|edges| edges.tilt > TILTED)
+    edges.is_some_and(|edges| is_tilted(&edges))
 }
 
 /// Whether normal and tangential tractions of these bodies are coupled, but the scene neglects the coupling.
