@@ -2,6 +2,7 @@
 
 use crate::cgroup;
 use crate::error::{Error, Result};
+use contact_model::units::{number, rounded};
 use std::borrow::Cow;
 use std::fmt;
 use std::fs;
@@ -91,10 +92,10 @@ pub fn threads_for_memory(
     let Some(available) = available_memory().map(|bytes| bytes as f64) else { return Ok(threads) };
     let each = if address_space().is_some() { bytes + reserved_by_thread() as f64 } else { bytes };
     if each > available {
-        let (needed, there) = (each * 1e-9, available * 1e-9);
-        let expected = format!(
-            "a size that fits in memory (it needs about {needed:.1} GB, {there:.1} GB are available)"
-        );
+        // Two digits would often be the same for both.
+        let [needed, there] = [each, available].map(|bytes| number(rounded(1e-9 * bytes, 3)));
+        let expected =
+            format!("a size that fits in memory (it needs about {needed} GB, {there} GB are available)");
         return Err(Error::parameter(name, value, expected));
     }
     Ok(((available / each) as usize).clamp(1, threads.max(1)))

@@ -265,17 +265,23 @@ fn memory_at(scene: &SceneFile, numerics: &Numerics, contact: f64) -> f64 {
 pub(crate) fn jobs_in_memory(scene: &SceneFile, most: usize) -> Result<usize> {
     let states: usize =
         scene.models.iter().map(|numerics| scene.surfaces_of(numerics) * scene.request.count()).sum();
-    runs::threads_for_memory(1, BYTES_PER_STATE * states as f64, "number of states", states)?;
+    let refused = runs::Error::model("the plan");
+    runs::check_memory(format!("{states} states"), BYTES_PER_STATE * states as f64).map_err(refused)?;
     let mut jobs = most;
     for numerics in &scene.models {
-        let name = if numerics.boundary_elements().is_some() { "cells" } else { "elements" };
         let memory = memory(scene, numerics);
-        if numerics.boundary_elements().is_some() {
+        let (name, value) = if numerics.boundary_elements().is_some() {
             let Cells { columns, rows } = cells(scene, numerics);
-            let what = format!("{} on {columns} x {rows} cells", numerics.name());
+            let grid = format!("{columns} x {rows}");
+            // An error of its own, with both sizes as numbers. The other one also counts what a thread reserves
+            // where the address space is limited.
+            let what = format!("{} on {grid} cells", numerics.name());
             runs::check_memory(what, memory).map_err(runs::Error::model("the plan"))?;
-        }
-        jobs = runs::threads_for_memory(jobs, memory, name, numerics.size())?;
+            ("cells", grid)
+        } else {
+            ("elements", numerics.size().to_string())
+        };
+        jobs = runs::threads_for_memory(jobs, memory, name, value)?;
     }
     Ok(jobs)
 }
