@@ -1,6 +1,7 @@
 //! Means over surfaces and their errors.
 
 use crate::curves::Curves;
+use numerics::quantile::student;
 use numerics::sum::sum;
 use serde::{Deserialize, Serialize};
 
@@ -34,6 +35,18 @@ pub fn mean_and_deviation(values: &[f64]) -> Option<(f64, Option<f64>)> {
     // Two passes: no cancellation between mean square and squared mean.
     let squares = || sum(values.iter().map(|v| (v - mean) * (v - mean)));
     Some((mean, (values.len() > 1).then(|| (squares() / (n - 1.0)).sqrt())))
+}
+
+/// Half of the 95 % interval of a mean over `count` numbers, of which one has this standard deviation, by Student's
+/// distribution with one degree of freedom less than there are numbers.
+///
+/// ```
+/// // 12.706 is Student's quantile of one degree of freedom.
+/// assert!((analysis::half_width_of_mean(2.0_f64.sqrt(), 2) - 12.706).abs() < 1e-3);
+/// ```
+pub fn half_width_of_mean(deviation: f64, count: usize) -> f64 {
+    let n = count as f64;
+    student(n - 1.0) * deviation / n.sqrt()
 }
 
 /// Statistics of finite positive numbers; `None` for no numbers, or where one is not finite and positive.

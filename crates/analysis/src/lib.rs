@@ -66,7 +66,7 @@ pub use collapse::{CollapsePoint, Residual, collapse, decades_within};
 pub use conductance::conductance;
 pub use crossing::{Crossing, crossing, least_spread};
 pub use curves::{Curves, StiffnessSample, interpolate};
-pub use ensemble::{EnsemblePoint, Statistics, ensemble, mean_and_deviation, statistics};
+pub use ensemble::{EnsemblePoint, Statistics, ensemble, half_width_of_mean, mean_and_deviation, statistics};
 pub use fit::{FitWindow, FittedPowerLaw, NoFit, fit_power_law};
 pub use grid_error::{
     GridError, KnownPart, error_from_moments, grid_error, mean_grid_error, relative_differences,

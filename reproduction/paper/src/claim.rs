@@ -108,8 +108,7 @@ impl Estimate {
     /// The mean of independent numbers with Student's interval; `None` for fewer than two.
     pub(crate) fn mean(each: &[f64]) -> Option<Self> {
         let (value, deviation) = analysis::mean_and_deviation(each)?;
-        let n = each.len() as f64;
-        Some(Self { value, half_width: analysis::student(n - 1.0) * deviation? / n.sqrt() })
+        Some(Self { value, half_width: analysis::half_width_of_mean(deviation?, each.len()) })
     }
 }
 

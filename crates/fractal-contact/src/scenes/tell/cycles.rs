@@ -4,7 +4,7 @@ use crate::scenes::read::{Result, SceneFile, amount, cycles};
 use crate::scenes::run::SolvedUnit;
 use crate::scenes::tell::stated_error::PLUS_MINUS;
 use crate::scenes::tell::{StateTable, columns};
-use analysis::{mean_and_deviation, student};
+use analysis::{half_width_of_mean, mean_and_deviation};
 use contact_model::quantities::StateQuantity;
 use contact_model::{Table, Value};
 
@@ -86,8 +86,7 @@ pub(crate) fn lines(states: &StateTable<'_>, model: &str) -> Vec<String> {
             let taken: Vec<f64> = of_model.filter_map(|unit| energy(unit, quantity, of_cycle)).collect();
             let (mean, deviation) = mean_and_deviation(&taken)?;
             let unit = columns::column(scene, quantity).unit;
-            let surfaces = taken.len() as f64;
-            let half = deviation.map(|deviation| student(surfaces - 1.0) * deviation / surfaces.sqrt());
+            let half = deviation.map(|deviation| half_width_of_mean(deviation, taken.len()));
             let half = half.map_or_else(String::new, |half| format!(" {PLUS_MINUS} {}", amount(half, unit)));
             Some(format!("{} {}{half}", quantity.name, amount(mean, unit)))
         };

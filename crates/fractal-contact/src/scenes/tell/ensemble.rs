@@ -3,7 +3,7 @@
 use crate::scenes::read::SceneFile;
 use crate::scenes::run::{AnsweredState, SolvedUnit, StateRecord};
 use crate::scenes::tell::columns;
-use analysis::{mean_and_deviation, student};
+use analysis::{half_width_of_mean, mean_and_deviation};
 use contact_model::quantities::{Average, Role, StateQuantity};
 use contact_model::{Column, Table, Value};
 
@@ -45,8 +45,7 @@ impl Mean {
     /// degree of freedom less than there are surfaces.
     pub fn interval(&self, quantity: &StateQuantity) -> Option<MeanAndDeviation> {
         let (mean, deviation, surfaces) = self.find(quantity, false)?;
-        let half = |deviation: f64| student(surfaces as f64 - 1.0) * deviation / (surfaces as f64).sqrt();
-        Some((mean, deviation.map(half)))
+        Some((mean, deviation.map(|deviation| half_width_of_mean(deviation, surfaces))))
     }
 
     /// The same for its discretisation error.
