@@ -209,6 +209,18 @@ pub(crate) struct FoundSurface {
     pub notes: Vec<Diagnostic>,
 }
 
+impl FoundSurface {
+    /// The surface of a file.
+    fn of_file(
+        surface: SceneSurface,
+        metadata: String,
+        reliable_from: Option<f64>,
+        notes: Vec<Diagnostic>,
+    ) -> Self {
+        Self { surface, added_body: None, metadata: Some(metadata), reliable_from, notes }
+    }
+}
+
 impl From<SceneSurface> for FoundSurface {
     fn from(surface: SceneSurface) -> Self {
         Self { surface, added_body: None, metadata: None, reliable_from: None, notes: Vec::new() }
@@ -270,13 +282,7 @@ fn find_map(
     if profile {
         refuse_for_profile(question, places)?;
         let plain = SceneSurface::Plain(Surface::Profile(Arc::new(map)));
-        return Ok(FoundSurface {
-            surface: plain,
-            added_body: None,
-            metadata: Some(metadata),
-            reliable_from,
-            notes,
-        });
+        return Ok(FoundSurface::of_file(plain, metadata, reliable_from, notes));
     }
     if let Some(second) = second {
         let other = scan::read_second(second, &map, system, directory, places)?;
@@ -298,20 +304,14 @@ fn find_map(
         let heights = keep_heights.then(|| HeightDistribution::Of(Arc::clone(&of)));
         let rough = RandomSurface::new(RandomSpectrum::Twin { of, like }, heights);
         let surface = SceneSurface::Drawn { rough, body };
-        return Ok(FoundSurface {
-            surface,
-            added_body: None,
-            metadata: Some(metadata),
-            reliable_from,
-            notes,
-        });
+        return Ok(FoundSurface::of_file(surface, metadata, reliable_from, notes));
     }
     let map = match &body {
         None => map,
         Some(body) => add(&map, body).map_err(|e| places.at_key("scene", e.to_string()))?,
     };
     let plain = SceneSurface::Plain(Surface::Heights(Arc::new(map)));
-    Ok(FoundSurface { surface: plain, added_body: body, metadata: Some(metadata), reliable_from, notes })
+    Ok(FoundSurface { added_body: body, ..FoundSurface::of_file(plain, metadata, reliable_from, notes) })
 }
 
 /// Refuses keys that cannot be combined with a profile.
