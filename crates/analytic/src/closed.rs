@@ -43,19 +43,12 @@ pub(crate) trait ClosedLaw: Send {
     fn at_approach(&self, approach: f64) -> Result<ClosedState>;
     /// State without a load.
     fn unloaded(&self) -> ClosedState {
-        ClosedState {
-            force: 0.0,
-            approach: 0.0,
-            stiffness: 0.0,
-            area: Some(0.0),
-            radius: None,
-            largest_pressure: None,
-        }
+        ClosedState { area: Some(0.0), ..ClosedState::default() }
     }
 }
 
 /// One state of a [`ClosedLaw`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct ClosedState {
     pub force: f64,
     pub approach: f64,
@@ -90,12 +83,17 @@ pub(crate) fn round(radius: f64) -> ScaledState {
 }
 
 impl ClosedState {
+    /// A round body without a load, which touches in a point.
+    pub fn round_unloaded() -> Self {
+        Self { area: Some(0.0), radius: Some(0.0), ..Self::default() }
+    }
+
     /// A round contact inside a face of this size.
     pub fn round(force: f64, approach: f64, radius: f64, size: Size) -> Result<Self> {
         within(radius, size)?;
         let area = Some(PI * radius * radius);
         let stiffness = 2.0 * radius;
-        Ok(Self { force, approach, stiffness, area, radius: Some(radius), largest_pressure: None })
+        Ok(Self { force, approach, stiffness, area, radius: Some(radius), ..Self::default() })
     }
 }
 

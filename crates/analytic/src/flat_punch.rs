@@ -93,26 +93,14 @@ struct Face {
 impl ClosedLaw for Face {
     fn at_force(&self, force: f64) -> Result<ClosedState> {
         let Self { stiffness, area } = *self;
-        Ok(ClosedState {
-            force,
-            approach: force / stiffness,
-            stiffness,
-            area: Some(area),
-            radius: None,
-            largest_pressure: None,
-        })
+        let (approach, area) = (force / stiffness, Some(area));
+        Ok(ClosedState { force, approach, stiffness, area, ..ClosedState::default() })
     }
 
     fn at_approach(&self, approach: f64) -> Result<ClosedState> {
         let Self { stiffness, area } = *self;
-        Ok(ClosedState {
-            force: stiffness * approach,
-            approach,
-            stiffness,
-            area: Some(area),
-            radius: None,
-            largest_pressure: None,
-        })
+        let (force, area) = (stiffness * approach, Some(area));
+        Ok(ClosedState { force, approach, stiffness, area, ..ClosedState::default() })
     }
 }
 

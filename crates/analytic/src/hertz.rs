@@ -64,15 +64,7 @@ impl ClosedLaw for HertzSphere {
     }
 
     fn unloaded(&self) -> ClosedState {
-        let none = Some(0.0);
-        ClosedState {
-            force: 0.0,
-            approach: 0.0,
-            stiffness: 0.0,
-            area: none,
-            radius: none,
-            largest_pressure: none,
-        }
+        ClosedState { largest_pressure: Some(0.0), ..ClosedState::round_unloaded() }
     }
 }
 

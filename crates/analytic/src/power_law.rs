@@ -199,14 +199,8 @@ impl ClosedLaw for Eq12 {
     fn at_force(&self, force: f64) -> Result<ClosedState> {
         within_power_law(force)?;
         let stiffness = self.factor * force.powf(self.alpha);
-        Ok(ClosedState {
-            force,
-            approach: force / ((1.0 - self.alpha) * stiffness),
-            stiffness,
-            area: None,
-            radius: None,
-            largest_pressure: None,
-        })
+        let approach = force / ((1.0 - self.alpha) * stiffness);
+        Ok(ClosedState { force, approach, stiffness, ..ClosedState::default() })
     }
 
     fn at_approach(&self, approach: f64) -> Result<ClosedState> {

@@ -117,6 +117,10 @@ impl ClosedLaw for PowerLawShape {
         let contact = (approach / self.depth).powf(self.exponent.recip());
         ClosedState::round(2.0 * self.share() * approach * contact, approach, contact, self.size)
     }
+
+    fn unloaded(&self) -> ClosedState {
+        ClosedState::round_unloaded()
+    }
 }
 
 #[cfg(test)]
@@ -159,6 +163,21 @@ mod tests {
         let hertz = pressed(&crate::Hertz, &sphere, Load::force(0.01)).unwrap();
         assert_relative_eq!(here.approach.unwrap(), hertz.approach.unwrap(), max_relative = POWER_ROUNDING);
         assert_relative_eq!(here.area.unwrap(), hertz.area.unwrap(), max_relative = POWER_ROUNDING);
+    }
+
+    #[test]
+    fn a_body_without_a_load_has_a_contact_radius_of_zero() {
+        for surface in [
+            Surface::Cone { slope: 0.1, size: 2.0.into() },
+            Surface::Sphere { radius: 1.3, size: 1.0.into() },
+            Surface::PowerLaw { coefficient: 0.5, exponent: 4.0, size: 1.0.into() },
+        ] {
+            let scene = Scene::new(surface, 2.0);
+            for load in [Load::force(0.0), Load::approach(0.0)] {
+                let state = pressed(&PowerLawBody, &scene, load).unwrap();
+                assert_eq!([state.contact_radius, state.area], [Some(0.0); 2], "{scene:?} {load:?}");
+            }
+        }
     }
 
     #[test]
