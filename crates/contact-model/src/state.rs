@@ -364,8 +364,9 @@ impl Branch {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct ContactResolution {
     /// Largest pressure of a cell: the mean over that cell, which grows as cells get smaller until they
-    /// resolve the shortest wave. Of a formula without cells it is the largest pressure at a point. `None` where the contact is known and its pressures are not (a viscoelastic
-    /// one by its equivalent elastic contact).
+    /// resolve the shortest wave. Of a formula without cells it is the largest pressure at a point. `None`
+    /// where the contact is known and its pressures are not (a viscoelastic one by its equivalent elastic
+    /// contact).
     pub largest_pressure: Option<f64>,
     /// Largest share of the force that a single cell carries, in [0, 1].
     pub largest_share: f64,

@@ -362,7 +362,7 @@ impl AdhesiveContact<'_> {
             stiffness: stiffness.along_the_branch.map(|k| PI * k),
             fixed_area: stiffness.fixed_area.map(|k| PI * k),
             adhesive: Some(AdhesiveState::new(branch, stored, response.stability)),
-            resolution: Some(self.surface.loaded_cells(&contact, &net)?),
+            resolution: Some(self.surface.resolution_of(&contact, &net)?),
         };
         let (state, slid) = self.surface.assess(normal, slid, stop)?;
         let last = Last { equilibrium, control, branch, state: returned(state)? };

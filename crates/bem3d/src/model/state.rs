@@ -333,9 +333,9 @@ impl PreparedSurface {
         Field::new([grid.columns, grid.rows], self.size, values)
     }
 
-    /// The largest of these pressures of a contact, its share of all pressures, and the cells at an edge of the
-    /// rectangle or of an undefined point. Attraction counts as no pressure.
-    pub(super) fn loaded_cells(&self, contact: &CellSet, pressure: &[f64]) -> Result<ContactResolution> {
+    /// The resolution of a contact with these pressures: the largest of them, its share of all pressures, and the
+    /// cells at an edge of the rectangle or of an undefined point. Attraction counts as no pressure.
+    pub(super) fn resolution_of(&self, contact: &CellSet, pressure: &[f64]) -> Result<ContactResolution> {
         let grid = self.problem.grid();
         let largest = pressure.iter().copied().fold(0.0, f64::max);
         // A profile goes on along y.
@@ -368,7 +368,7 @@ impl PreparedSurface {
     /// The measures of how well the cells resolve the contact.
     fn resolution(&self, solved: &Solved) -> Result<ContactResolution> {
         let contact = &solved.contact;
-        let resolution = self.loaded_cells(contact, &solved.p)?;
+        let resolution = self.resolution_of(contact, &solved.p)?;
         // The correction for the boundary is one for curved boundaries; a line contact is not biased.
         if !self.outputs.area || self.is_profile {
             return Ok(resolution);

@@ -114,6 +114,7 @@ pub(crate) enum Reading {
 /// # Errors
 /// A picture that cannot be encoded.
 pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView, reading: Reading) -> Result<Markup> {
+    // Ends of the values that are only rounding become zero here, as in the pictures.
     let (least, most) = ColourScale::new(view.ends.unwrap_or_default(), false, false).ends();
     let own = FieldPicture { range: Some(picture.range.unwrap_or((least, most))), ..picture.clone() };
     let scale = own.scale();
