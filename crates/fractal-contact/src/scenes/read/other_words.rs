@@ -229,7 +229,8 @@ fn plain(name: &str) -> String {
     name.trim_start_matches('-').to_lowercase().replace(['-', ' ', '.'], "_")
 }
 
-/// What was meant by a name that is no key of this table, such as `scene` or `scene.bodies`.
+/// Returns advice for a name that is not a key of `table`, which is `scene`, `scene.bodies` or another one: how the
+/// key that the name stands for is written, or what there is instead of it. A name that [`TABLE`] lacks has none.
 pub(crate) fn meant(table: &str, name: &str) -> Option<String> {
     let word = plain(name);
     let of = TABLE.iter().find(|of| of.words.contains(&&*word))?;
@@ -243,7 +244,8 @@ pub(crate) fn meant(table: &str, name: &str) -> Option<String> {
     })
 }
 
-/// What was meant by a flag that `press` does not have.
+/// Returns advice for a flag that `press` does not have: the flag that it stands for, or what there is instead of
+/// it. A name that [`TABLE`] lacks has none.
 pub(crate) fn meant_by_flag(flag: &str) -> Option<String> {
     let word = plain(flag);
     let of = TABLE.iter().find(|of| of.words.contains(&&*word))?;

@@ -506,7 +506,8 @@ fn with_other_tables(mistake: Diagnostic) -> Diagnostic {
     mistake.with_help(help.join("\n"))
 }
 
-/// What was meant by a flag that `press` does not have.
+/// Returns advice for a flag that `press` does not have: the flag or the key that it stands for, or what there is
+/// instead of it.
 pub fn meant_by_flag(flag: &str) -> Option<String> {
     let name = flag.trim_start_matches('-').replace('-', "_");
     let set = || {
