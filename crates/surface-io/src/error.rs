@@ -321,7 +321,7 @@ pub enum ContentError {
         what: &'static str,
     },
     /// A line with another number of values than the first one.
-    #[error("line {line} has {found} values: expected {expected} as in line {first}")]
+    #[error("line {line} has {}: expected {expected} as in line {first}", values(*.found))]
     Ragged {
         /// Line, from 1.
         line: usize,
@@ -333,7 +333,7 @@ pub enum ContentError {
         first: usize,
     },
     /// Lines without as many values as a point has.
-    #[error("line {line} has {found} values: expected {expected}")]
+    #[error("line {line} has {}: expected {expected}", values(*.found))]
     NoPoint {
         /// Line, from 1.
         line: usize,
@@ -628,6 +628,12 @@ pub enum NumberKind {
     Two,
     /// Beyond the range of doubles.
     TooLarge,
+}
+
+/// A number of values, in words.
+fn values(count: usize) -> String {
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{count} value{ending}")
 }
 
 impl fmt::Display for NumberKind {

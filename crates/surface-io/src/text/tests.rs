@@ -175,7 +175,7 @@ fn every_bad_text_says_where_and_what_to_do() {
             b"1 2\n3 x\n",
             "a.txt: line 2, value 2: \"x\": expected a number (comments begin with # or %; skip_lines leaves out a heading)",
         ),
-        (b"1 2\n3\n", "a.txt: line 2 has 1 values: expected 2 as in line 1"),
+        (b"1 2\n3\n", "a.txt: line 2 has 1 value: expected 2 as in line 1"),
         (b"# c\n\n1 2\n3 4 5\n", "a.txt: line 4 has 3 values: expected 2 as in line 3"),
         (b"1,500\t2,500\n", "a.txt: line 1, value 1: \"1,500\": a decimal comma? say decimal = \"comma\""),
         (b"1,5;2.5\n", "a.txt: line 1, value 1: \"1,5\": a decimal comma? say decimal = \"comma\""),
