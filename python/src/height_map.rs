@@ -42,6 +42,8 @@ pub struct PyHeightMap {
     pub map: Arc<RustMap>,
     /// What was done with the axes of an array whose dimensions have names.
     axes: Option<String>,
+    /// Which points were filled when the file of the map was read.
+    filled: Option<Arc<[bool]>>,
 }
 
 impl From<RustMap> for PyHeightMap {
@@ -52,7 +54,7 @@ impl From<RustMap> for PyHeightMap {
 
 impl From<Arc<RustMap>> for PyHeightMap {
     fn from(map: Arc<RustMap>) -> Self {
-        Self { map, axes: None }
+        Self { map, axes: None, filled: None }
     }
 }
 
@@ -111,6 +113,37 @@ fn combined<'py>(
 }
 
 impl PyHeightMap {
+    /// A map, and the same one with the points undefined that were filled.
+    pub fn with_holes(map: RustMap, holes: Option<&RustMap>) -> Self {
+        let filled = holes.map(|holes| holes.heights().iter().map(|h| !h.is_finite()).collect());
+        Self { filled, ..map.into() }
+    }
+
+    /// The map with the points undefined that were filled; `None` where none was.
+    pub fn holes(&self) -> Option<RustMap> {
+        let filled = self.filled.as_ref()?;
+        let height = |(h, filled): (&f64, &bool)| if *filled { f64::NAN } else { *h };
+        let heights = self.map.heights().iter().zip(filled.iter()).map(height).collect();
+        RustMap::with_undefined(self.map.cells(), self.map.size(), heights).ok()
+    }
+
+    /// What this makes of the map, with what it makes of the points that were filled.
+    fn made<E>(&self, of: impl Fn(&RustMap) -> Result<RustMap, E>) -> Result<Self, E> {
+        // A part may have been filled as a whole: then it is not known any more.
+        let holes = self.holes().and_then(|holes| of(&holes).ok());
+        Ok(Self::with_holes(of(&self.map)?, holes.filter(|holes| holes.undefined() > 0).as_ref()))
+    }
+
+    /// The points that were filled in either of two maps of the same cells.
+    fn filled_in_either(&self, other: &Self) -> Option<Arc<[bool]>> {
+        match (&self.filled, &other.filled) {
+            (Some(one), Some(other)) => {
+                Some(one.iter().zip(other.iter()).map(|(one, other)| *one || *other).collect())
+            }
+            (one, other) => one.clone().or_else(|| other.clone()),
+        }
+    }
+
     /// A copy of the heights, NaN at undefined points.
     fn array<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         self.copied(py)?;
@@ -171,6 +204,17 @@ impl PyHeightMap {
             said.set_item("axes", axes)?;
         }
         Ok(said)
+    }
+
+    /// numpy.ndarray or None: which points were filled when the file of the map was read with ``fill``, [row, column];
+    /// None where none was. `statistics.fit_spectrum` takes them into account. Maps that follow from this one by their
+    /// methods, by numbers and by arrays keep it.
+    #[getter]
+    fn filled<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray2<bool>>>> {
+        let array = |filled: &Arc<[bool]>| {
+            PyArray1::from_slice(py, filled).reshape([self.map.rows(), self.map.columns()])
+        };
+        self.filled.as_ref().map(array).transpose()
     }
 
     /// numpy.ndarray: the heights, [row, column]; NaN at undefined points. Read-only: ``np.array(map)`` is a copy to
@@ -394,19 +438,19 @@ impl PyHeightMap {
     /// The map with x and y exchanged.
     fn transposed(&self, py: Python<'_>) -> PyResult<Self> {
         self.copied(py)?;
-        Ok(self.map.transposed().into())
+        self.made(|map| Ok(map.transposed()))
     }
 
     /// The map with x reversed.
     fn mirrored(&self, py: Python<'_>) -> PyResult<Self> {
         self.copied(py)?;
-        Ok(self.map.mirrored().into())
+        self.made(|map| Ok(map.mirrored()))
     }
 
     /// The map turned by a quarter from x to y.
     fn rotated(&self, py: Python<'_>) -> PyResult<Self> {
         self.copied(py)?;
-        Ok(self.map.rotated().into())
+        self.made(|map| Ok(map.rotated()))
     }
 
     /// The map of the rows and columns from the first to before the second of each pair.
@@ -420,8 +464,8 @@ impl PyHeightMap {
         let [wide, high] = [columns, rows].map(|[first, end]| end.saturating_sub(first));
         let cells = Cells { columns: wide.min(self.map.columns()), rows: high.min(self.map.rows()) };
         memory::check_grid(py, "a map", cells, cells.map_bytes())?;
-        let map = self.map.cropped(columns[0]..columns[1], rows[0]..rows[1]);
-        map.map(Self::from).map_err(|error| of_model(py, error))
+        let map = self.made(|map| map.cropped(columns[0]..columns[1], rows[0]..rows[1]));
+        map.map_err(|error| of_model(py, error))
     }
 
     /// The map with its sides and its heights multiplied.
@@ -439,7 +483,7 @@ impl PyHeightMap {
     ///     A new map.
     fn scaled(&self, py: Python<'_>, lateral: RealNumber, vertical: RealNumber) -> PyResult<Self> {
         self.copied(py)?;
-        self.map.scaled(lateral.0, vertical.0).map(Self::from).map_err(|error| of_model(py, error))
+        self.made(|map| map.scaled(lateral.0, vertical.0)).map_err(|error| of_model(py, error))
     }
 
     /// Draws the map with matplotlib: cells in their shape, the first row at the bottom, a colour bar.
@@ -476,7 +520,8 @@ impl PyHeightMap {
         let Ok(other) = other.cast::<Self>() else { return combined(slf, other, "add", false) };
         slf.get().copied(slf.py())?;
         let sum = slf.get().map.plus(&other.get().map).map_err(|error| of_model(slf.py(), error))?;
-        Ok(Self::from(sum).into_pyobject(slf.py())?.into_any())
+        let filled = slf.get().filled_in_either(other.get());
+        Ok(Self { filled, ..sum.into() }.into_pyobject(slf.py())?.into_any())
     }
 
     fn __radd__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
@@ -487,7 +532,8 @@ impl PyHeightMap {
         let Ok(other) = other.cast::<Self>() else { return combined(slf, other, "subtract", false) };
         slf.get().copied(slf.py())?;
         let difference = slf.get().map.minus(&other.get().map).map_err(|error| of_model(slf.py(), error))?;
-        Ok(Self::from(difference).into_pyobject(slf.py())?.into_any())
+        let filled = slf.get().filled_in_either(other.get());
+        Ok(Self { filled, ..difference.into() }.into_pyobject(slf.py())?.into_any())
     }
 
     fn __rsub__<'py>(slf: &Bound<'py, Self>, other: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
@@ -525,15 +571,21 @@ impl PyHeightMap {
         self.heights(py)?.rich_compare(other, operation)
     }
 
-    /// From the values of `__reduce__`.
+    /// The map with what is known of where it comes from.
     #[staticmethod]
-    fn _with_axes(map: &Self, axes: Option<String>) -> Self {
-        Self { axes, ..map.clone() }
+    #[pyo3(signature = (map, axes, filled))]
+    fn _with_origin(
+        map: &Self,
+        axes: Option<String>,
+        filled: Option<PyReadonlyArray2<'_, bool>>,
+    ) -> PyResult<Self> {
+        let filled = filled.map(|filled| filled.to_vec()).transpose()?.map(Arc::from);
+        Ok(Self { axes, filled, ..map.clone() })
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         let undefined = if self.undefined() > 0 { "no_contact" } else { "error" };
-        reduced(py, "height_map", (self.array(py)?, self.size(), undefined, &self.axes))
+        reduced(py, "height_map", (self.array(py)?, self.size(), undefined, &self.axes, self.filled(py)?))
     }
 
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {

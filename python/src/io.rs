@@ -131,7 +131,8 @@ pub fn read_surface<'py>(
                       format=\"text\")";
         return Err(plain(py, "ReadError", &format!("{}: {reason}", path.display())));
     }
-    Ok((found.map.into(), metadata(py, &described)?, found.steps, found.reliable_from))
+    let map = PyHeightMap::with_holes(found.map, found.holes.as_ref());
+    Ok((map, metadata(py, &described)?, found.steps, found.reliable_from))
 }
 
 /// Metadata of each channel of a file; of a channel that cannot be read beside others, `error`.

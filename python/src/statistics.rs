@@ -6,15 +6,16 @@ use crate::memory;
 use crate::numbers::RealNumber;
 use crate::pool;
 use fractal_contact::surface_statistics::{
-    Bins, Derivatives, DifferenceBands, DifferenceMap, FeatureParameters, FunctionalParameters,
+    Bins, Derivatives, DifferenceBands, DifferenceMap, FeatureParameters, FilledPoints, FunctionalParameters,
     HeightParameters, HybridParameters, Interval, PowerSpectrum, ReliableWavelengths, ScaleDependence,
     SpatialParameters, SpectrumFit, Taper, Wavelength, nayak_parameter, texture_direction,
 };
-use fractal_contact::{Boundary, Error, Result};
+use fractal_contact::{Boundary, Error, Result, surface_io};
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::f64::consts::TAU;
 use std::sync::Arc;
 
 fn boundary(periodic: bool) -> Boundary {
@@ -207,6 +208,40 @@ pub fn scale_dependence<'py>(
     Ok(dict)
 }
 
+/// Probability of a worse fit below which a fit means nothing.
+const DOUBTFUL: f64 = 0.01;
+
+/// What has to be known beside the numbers of a fit.
+fn notes_on(fit: &SpectrumFit, points: &FilledPoints) -> Vec<String> {
+    let (mut notes, filled) = (Vec::new(), points.count());
+    if filled > 0 {
+        let (all, shortest) = (points.of_all(), TAU / fit.fitted[1]);
+        notes.push(format!(
+            "{filled} of {all} points have heights between those of their neighbours. The fit takes into account which waves are missing \
+             there, and ends at a wavelength of {shortest:.4e}."
+        ));
+    }
+    if fit.goodness < DOUBTFUL {
+        let remedy = if filled > 0 {
+            "Points that were filled change short waves: crop=\"defined\" of fc.read_surface uses a part of the map without them."
+        } else {
+            "Heights that were filled or smoothed before are a common reason: a map with undefined points in their place \
+             (undefined=\"no_contact\", or a masked array) has a fit that takes them into account. Another one is a lay."
+        };
+        notes.push(format!(
+            "The spectrum is not that of an isotropic self-affine surface: a Gaussian one fits worse with a probability of only {:.0e}. \
+             The exponent and both wavelengths have no meaning. {remedy}",
+            fit.goodness
+        ));
+    } else if fit.hurst.low > 1.0 || fit.hurst.high < 0.0 {
+        notes.push(format!(
+            "The exponent {:.2} is not between 0 and 1: the surface is not self-affine between the wavelengths of the fit.",
+            fit.hurst.value
+        ));
+    }
+    notes
+}
+
 /// The fit of a self-affine spectrum: each quantity as (value, low, high), None where there is only a bound.
 #[pyfunction]
 #[pyo3(signature = (map, periodic, instrument))]
@@ -217,13 +252,15 @@ pub fn fit_spectrum<'py>(
     instrument: Option<RealNumber>,
 ) -> PyResult<Bound<'py, PyDict>> {
     check_memory(py, map, SPECTRUM)?;
-    let (of, boundary) = (Arc::clone(&map.map), boundary(periodic));
+    let (map, boundary) = (map.clone(), boundary(periodic));
     let instrument = instrument.map(|RealNumber(wavelength)| wavelength);
     let found = pool::call(py, move || {
-        let reliable = ReliableWavelengths::new(&of, boundary, instrument)?;
-        SpectrumFit::new(&of, &reliable.fit_options(boundary))
+        let points = FilledPoints::new(map.holes().as_ref().unwrap_or(&map.map));
+        let reliable = ReliableWavelengths::new(&map.map, boundary, instrument)?;
+        let whole = surface_io::filled(&map.map)?;
+        SpectrumFit::of_filled(&whole, &points, &reliable.fit_options(boundary)).map(|fit| (fit, points))
     });
-    let fit = known(py, found)?;
+    let (fit, points) = known(py, found)?;
     let interval = |of: &Interval| (Some(of.value), Some(of.low), Some(of.high));
     let wavelength = |of: &Wavelength| match of {
         Wavelength::Interval(of) => interval(of),
@@ -237,5 +274,7 @@ pub fn fit_spectrum<'py>(
     dict.set_item("cut_off", wavelength(&fit.cut_off))?;
     dict.set_item("goodness", fit.goodness)?;
     dict.set_item("fitted", (fit.fitted[0], fit.fitted[1]))?;
+    dict.set_item("filled", points.count())?;
+    dict.set_item("notes", notes_on(&fit, &points))?;
     Ok(dict)
 }

@@ -1,6 +1,8 @@
 """Surfaces and scenes from files, statistics."""
 
+import copy
 import os
+import pickle
 import re
 import subprocess
 import threading
@@ -49,8 +51,6 @@ def test_a_measured_map():
     known = fc.statistics.parameters(found.heights)
     assert known["Sq"] == pytest.approx(4.687922e-9, rel=1e-6) and known["Str"] is None
     assert fc.channels(file)[0]["shape"] == (512, 512)
-    with pytest.raises(TypeError, match='no option is called "chanel"'):
-        fc.read_surface(file, chanel=0)
     with pytest.raises(ValueError, match="detrend"):
         fc.read_surface(file, channel=0, detrend="pane")
 
@@ -142,6 +142,44 @@ def test_statistics_with_bands():
     assert fit["hurst"][1] < 0.8 < fit["hurst"][2] and fit["goodness"] > 0.01
     with pytest.raises(ValueError, match="direction"):
         fc.statistics.power_spectrum(rough, "z")
+
+
+def test_an_exponent_takes_holes_into_account(tmp_path):
+    # The rims of the holes make waves beyond the cut-off, which a fit that does not know of them takes for the surface.
+    waves = {"roll_off_wavelength": 0.25, "shortest_wavelength": 0.04}
+    rough = fc.Surface.self_affine(hurst=0.8, size=2.0, rms_height=0.01, **waves).height_map(400, 3)
+    rough = rough.cropped((0, 160), (0, 200))
+    y, x = np.mgrid[:160, :200]
+    holes = np.hypot(x % 48 - 24, y % 48 - 24) < 6.5
+    np.savetxt(tmp_path / "map.txt", np.where(holes, np.nan, rough.heights))
+    options = {"unit": "none", "size": "1 x 0.8"}
+    filled = fc.read_surface(tmp_path / "map.txt", fill="neighbours", **options).heights
+    kept = fc.read_surface(tmp_path / "map.txt", undefined="no_contact", **options).heights
+    masked = fc.HeightMap(np.ma.array(rough.heights, mask=holes), size=(1.0, 0.8))
+    assert np.array_equal(filled.filled, holes) and filled.undefined == 0
+    assert kept.filled is None and masked.filled is None and rough.filled is None
+    whole = fc.statistics.fit_spectrum(rough)
+    assert whole["notes"] == [] and whole["filled"] == 0
+    for given in (filled, kept, masked):
+        fit = fc.statistics.fit_spectrum(given)
+        value, low, high = fit["hurst"]
+        assert low < 0.8 < high and abs(value - whole["hurst"][0]) < 0.1 and fit["goodness"] > 0.01
+        assert fit["filled"] == holes.sum() and len(fit["notes"]) == 1
+        assert f"{holes.sum()} of {holes.size} points have heights between" in fit["notes"][0]
+    # What follows from the map keeps it, and so do copies.
+    copies = (copy.copy(filled), pickle.loads(pickle.dumps(filled)))
+    for made in (*copies, 2 * filled - 1, filled + rough, -filled, filled * np.array(rough)):
+        assert np.array_equal(made.filled, holes)
+    assert np.array_equal(filled.transposed().filled, holes.T)
+    assert np.array_equal(filled.mirrored().filled, holes[:, ::-1])
+    assert np.array_equal(filled.rotated().transposed().filled, filled.rotated().filled.T)
+    assert np.array_equal(filled.cropped((10, 60), (20, 90)).filled, holes[10:60, 20:90])
+    assert filled.cropped((0, 5), (0, 5)).filled is None
+    # Where it is not known, the fit says that its exponent means nothing.
+    unknown = fc.statistics.fit_spectrum(fc.HeightMap(np.array(filled), size=filled.size))
+    assert unknown["goodness"] < 0.01 and unknown["hurst"][0] > 3
+    (note,) = unknown["notes"]
+    assert "have no meaning" in note and 'undefined="no_contact"' in note
 
 
 def test_generators_are_those_of_rust():

@@ -499,6 +499,7 @@ mod tests {
             && a.requested == b.requested
             && a.sampling == b.sampling
             && a.reliable_from == b.reliable_from
+            && a.filled == b.filled
     }
 
     /// Each argument whose help shows a default, with that.

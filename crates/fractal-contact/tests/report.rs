@@ -230,6 +230,27 @@ fn a_map_with_holes_has_an_exponent_of_all_of_it() {
         assert!(high - low < 2.0 * (whole_high - whole_low), "{low} to {high}, {whole_low} to {whole_high}");
     }
     assert_eq!(exponent(&told[0]).map(f64::to_bits), exponent(&told[1]).map(f64::to_bits));
+    // The scene of a map that is filled has the same exponent, and says so in its report.
+    let dir = tempfile::tempdir().unwrap();
+    let row = |row: &[f64]| row.iter().map(f64::to_string).collect::<Vec<_>>().join(" ") + "\n";
+    let text = holes.heights().chunks(holes.columns()).map(row).collect::<String>().replace("-inf", "nan");
+    std::fs::write(dir.path().join("map.txt"), text).unwrap();
+    let page = report(
+        dir.path(),
+        "scene.toml",
+        "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nforce = 1e-4\ncontact_modulus = 1.0\n[scene.surface]\nkind = \"file\"\n\
+         path = \"map.txt\"\nsize = [1.0, 0.8]\nfill = \"neighbours\"\ndetrend = \"none\"\n[outputs]\narea = true\nstatistics = true\n\
+         [models.bem3d]\ntolerance = 1e-2\n",
+    );
+    assert!(page.contains("spectra and H are those of the whole map"), "{page}");
+    let table = std::fs::read_to_string(dir.path().join("out/statistics.csv")).unwrap();
+    let line = table.lines().find(|line| line.starts_with("H,")).unwrap_or_else(|| panic!("{table}"));
+    let numbers: Vec<f64> = line.split(',').skip(1).take(3).map(|number| number.parse().unwrap()).collect();
+    let shown = exponent(&told[1]);
+    assert!(
+        numbers.iter().zip(shown).all(|(number, shown)| (number - shown).abs() < 6e-4),
+        "{numbers:?} {shown:?}"
+    );
     for symbol in ["Sk", "Spk", "Svk"] {
         let line = told[0].lines().find(|line| line.starts_with(&format!("{symbol} "))).unwrap();
         assert!(line.split_whitespace().nth(1).unwrap().parse::<f64>().unwrap() > 0.0, "{line}");

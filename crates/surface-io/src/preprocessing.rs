@@ -109,6 +109,9 @@ pub struct Preprocessed {
     pub reliable_from: Option<f64>,
     /// Rms height before and after a window; `None` without one.
     pub tapered: Option<[f64; 2]>,
+    /// The same map with the points undefined that were filled; `None` where none was. Statistics need it: filled
+    /// points lack short waves. A larger cell of which less than half was measured counts as filled.
+    pub holes: Option<HeightMap>,
 }
 
 /// A part of a scan.
@@ -271,6 +274,8 @@ impl Scan {
         }
         // Before undefined points are filled: the trend is that of the measured heights.
         let trend = FittedTrend::new(preprocessing.detrend, cells, cell, &heights)?;
+        let measured = (undefined > 0 && preprocessing.fill.is_some())
+            .then(|| (cells, heights.iter().map(|h| if h.is_nan() { f64::NAN } else { 0.0 }).collect()));
         if undefined > 0 {
             steps.extend(self.treat_undefined(preprocessing, undefined, cells, cell, &mut heights)?);
         }
@@ -291,7 +296,8 @@ impl Scan {
         };
         let map = turned(map.map_err(ContentError::Map)?, preprocessing, &mut steps);
         let (map, tapered) = windowed(map, preprocessing, (&mut steps, self.unit()))?;
-        Ok(Preprocessed { map, steps, reliable_from, tapered })
+        let holes = measured.and_then(|(cells, marks)| without_filled(&map, preprocessing, cells, marks));
+        Ok(Preprocessed { map, steps, reliable_from, tapered, holes })
     }
 
     /// Refuses values that are no heights, and steps that contradict each other or the shape of the scan.
@@ -582,6 +588,25 @@ fn turned(mut map: HeightMap, preprocessing: &Preprocessing, steps: &mut Vec<Str
         steps.push(format!("turned by {} degrees", 90 * u32::from(turns)));
     }
     map
+}
+
+/// The map with the points undefined that were filled; `marks` are NaN there, on the cells before they were averaged.
+/// `None` where averaging has left none.
+fn without_filled(
+    map: &HeightMap,
+    preprocessing: &Preprocessing,
+    cells: Cells,
+    marks: Vec<f64>,
+) -> Option<HeightMap> {
+    // The same steps move the marks to where the heights are. They are no steps of their own for records.
+    let mut untold = Vec::new();
+    let (cells, marks) = averaged(preprocessing, cells, marks, &mut untold).ok()?;
+    let square = [cells.columns as f64, cells.rows as f64];
+    let marks = HeightMap::with_undefined(cells, square, marks).ok()?;
+    let marks = turned(marks, preprocessing, &mut untold);
+    let height = |(h, mark): (&f64, &f64)| if mark.is_finite() { *h } else { f64::NAN };
+    let heights = map.heights().iter().zip(marks.heights()).map(height).collect();
+    HeightMap::with_undefined(map.cells(), map.size(), heights).ok().filter(|holes| holes.undefined() > 0)
 }
 
 /// The map under its window, with the rms heights before and after.

@@ -62,6 +62,16 @@ impl FilledPoints {
         1.0 - lost.sum::<f64>() / self.all as f64
     }
 
+    /// Number of the points that are not measured.
+    pub fn count(&self) -> usize {
+        self.all - self.counts.first().copied().unwrap_or(0)
+    }
+
+    /// Number of all points of the map.
+    pub fn of_all(&self) -> usize {
+        self.all
+    }
+
     /// Twice the width of the widest hole, a length: longer waves are in a filled map, but for a small part.
     pub(crate) fn twice_the_widest(&self) -> f64 {
         4.0 * self.side * (self.counts.len() as f64 - 1.0)

@@ -142,7 +142,8 @@ def combined(map_: HeightMap, other: Any, operation: str, reflected: bool) -> An
     undefined = map_.undefined > 0
     if undefined and (np.isnan(heights) != np.isnan(map_.heights)).any():
         raise DomainError("a height that is no number: 0 divided by 0")
-    return HeightMap(heights, map_.size, undefined="no_contact" if undefined else "error")
+    made = HeightMap(heights, map_.size, undefined="no_contact" if undefined else "error")
+    return made if map_.filled is None else HeightMap._with_origin(made, None, map_.filled)
 
 
 def operand(other: Any) -> Any:

@@ -92,7 +92,7 @@ class HeightMap:
         undefined: Undefined = "error",
     ) -> HeightMap: ...
     @staticmethod
-    def _with_axes(map: HeightMap, axes: str | None) -> HeightMap: ...
+    def _with_origin(map: HeightMap, axes: str | None, filled: NDArray[np.bool_] | None) -> HeightMap: ...
     @property
     def metadata(self) -> dict[str, str]:
         """dict of str: what was done with the axes of an array whose dimensions have names, under ``"axes"``; empty
@@ -167,6 +167,14 @@ class HeightMap:
         """
     def __array__(self, dtype: DTypeLike | None = None, *, copy: bool | None = None) -> NDArray[Any]: ...
     def __len__(self) -> int: ...
+    @property
+    def filled(self) -> NDArray[np.bool_] | None:
+        """numpy.ndarray or None: which points were filled when the file of the map was read with ``fill``, [row,
+        column];
+        None where none was. `statistics.fit_spectrum` takes them into account. Maps that follow from this one by
+        their
+        methods, by numbers and by arrays keep it.
+        """
     @property
     def heights(self) -> NDArray[np.float64]:
         """numpy.ndarray: the heights, [row, column]; NaN at undefined points. Read-only: ``np.array(map)`` is a copy

@@ -13,10 +13,14 @@ from .typing import Undefined
 
 
 def height_map(
-    values: NDArray[np.float64], size: tuple[float, float], undefined: Undefined, axes: str | None = None
+    values: NDArray[np.float64],
+    size: tuple[float, float],
+    undefined: Undefined,
+    axes: str | None = None,
+    filled: NDArray[np.bool_] | None = None,
 ) -> HeightMap:
     """A map."""
-    return HeightMap._with_axes(HeightMap(values, size, undefined=undefined), axes)
+    return HeightMap._with_origin(HeightMap(values, size, undefined=undefined), axes, filled)
 
 
 def state(kept: bytes, fields: list[NDArray[np.float64] | None]) -> ContactState:

@@ -157,10 +157,14 @@ def curvature(heights: HeightMap, axis: Axis = "x", *, periodic: bool = False, l
 def fit_spectrum(heights: HeightMap, *, periodic: bool = False, instrument: float | None = None) -> dict[str, Any]:
     """Fits a self-affine spectrum.
 
+    Undefined points get heights between those of their neighbours, as `read_surface` gives them with
+    ``fill="neighbours"``. Short waves are missing there. The fit takes this into account, and ends at a longer wave
+    where it is not known well enough.
+
     Parameters
     ----------
     heights : HeightMap
-        A map without undefined points.
+        The map. Its undefined points, and those that were ``filled`` when it was read, count as not measured.
     periodic : bool
         Whether the map is periodic.
     instrument : float, optional
@@ -171,7 +175,19 @@ def fit_spectrum(heights: HeightMap, *, periodic: bool = False, instrument: floa
     dict
         The fit: ``hurst``, ``roll_off`` and ``cut_off`` (wavelengths) as (value, low, high) with 95 % limits, None
         where there is only a bound; ``goodness``, which is below 0.01 for a surface that is not self-affine;
-        ``fitted``, the range of wavelengths of the fit.
+        ``fitted``, the smallest and the largest wavenumber 2 pi/wavelength of the fit; ``filled``, the number of points
+        that are not measured; ``notes``, a list of texts that say what to beware of, such as that H has no meaning.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import fractal_contact as fc
+    >>> rough = fc.Surface.self_affine(hurst=0.8, size=1.0, rms_height=0.01).height_map(128, seed=1)
+    >>> spots = np.add.outer(np.arange(128) % 32 // 3, np.arange(128) % 32 // 3) == 0
+    >>> holes = fc.HeightMap(np.ma.array(rough, mask=spots), size=1.0)
+    >>> fit = fc.statistics.fit_spectrum(holes, periodic=True)
+    >>> fit["hurst"][1] < 0.8 < fit["hurst"][2], fit["filled"] == spots.sum(), len(fit["notes"])
+    (True, True, 1)
     """
     return _core.fit_spectrum(checked_map(heights), periodic, instrument)
 

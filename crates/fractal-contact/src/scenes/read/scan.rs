@@ -23,6 +23,8 @@ pub(crate) struct FileMap {
     pub notes: Vec<Diagnostic>,
     /// Whether it is a profile: one row that stands for a body uniform along y.
     pub profile: bool,
+    /// The map with the points undefined that were filled, where some were.
+    pub holes: Option<HeightMap>,
 }
 
 /// The description of a map, with units where its lengths are in metres.
@@ -55,7 +57,7 @@ pub(crate) fn read_map(
     let metadata = scan.metadata();
     let mut notes: Vec<Diagnostic> = metadata.notes.iter().map(|text| note(text.clone(), &file)).collect();
     let metric = metadata.unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);
-    let Preprocessed { map, steps, reliable_from, tapered, .. } =
+    let Preprocessed { map, steps, reliable_from, tapered, holes, .. } =
         scan.preprocessed(&preprocessing).map_err(wrong)?;
     if metric != (system == System::Si) {
         let (found, scene) = if metric { ("a unit", "none") } else { ("no unit", "units") };
@@ -87,31 +89,41 @@ pub(crate) fn read_map(
     for step in steps {
         metadata += &format!("\nthen       {step}");
     }
-    Ok(FileMap { map, metadata, reliable_from, notes, profile })
+    Ok(FileMap { map, metadata, reliable_from, notes, profile, holes })
 }
 
 /// Reads the surface of the second body, turns it over so that it faces the first, and adds both.
 pub(crate) fn read_second(
     asked: &AskedSecond,
-    first: &HeightMap,
+    (first, first_holes): (&HeightMap, Option<&HeightMap>),
     system: System,
     directory: &Path,
     places: &Places,
 ) -> ReadResult<FileMap> {
     const TABLE: &str = "scene.second_surface";
     let (facing, offset) = (asked.facing.unwrap_or(Some(Mirror::X)), asked.offset.unwrap_or_default());
-    let FileMap { map, mut metadata, reliable_from, notes, profile } =
+    let FileMap { map, mut metadata, reliable_from, notes, profile, holes } =
         read_map(&asked.file, TABLE, system, directory, places)?;
     if profile {
         return Err(places
             .at_key(TABLE, "[scene.second_surface] is a profile")
             .with_help("a profile is a body uniform along y, alone: bring both surfaces as maps"));
     }
-    let (map, how) = match facing {
-        Some(mirror) => (mirror.of(&map), format!("{} reversed", mirror.word())),
-        None => (map, "as it is seen through its body".to_owned()),
+    let (map, holes, how) = match facing {
+        Some(mirror) => {
+            let holes = holes.map(|holes| mirror.of(&holes));
+            (mirror.of(&map), holes, format!("{} reversed", mirror.word()))
+        }
+        None => (map, holes, "as it is seen through its body".to_owned()),
     };
     let sum = surface_io::composite(first, &map, offset).map_err(|e| places.at_key(TABLE, e.to_string()))?;
+    // A point of the sum is measured where both are.
+    let holes = if first_holes.is_some() || holes.is_some() {
+        let (first, second) = (first_holes.unwrap_or(first), holes.as_ref().unwrap_or(&map));
+        surface_io::composite(first, second, offset).ok()
+    } else {
+        None
+    };
     metadata += &format!("\nthen       laid on the first: {how}, its middle moved by {offset:?}");
     let length = |length: f64| ascii(&amount(length, system.shown("m")));
     metadata += &format!(
@@ -121,7 +133,7 @@ pub(crate) fn read_second(
         length(sum.size().x),
         length(sum.size().y)
     );
-    Ok(FileMap { map: sum, metadata, reliable_from, notes, profile: false })
+    Ok(FileMap { map: sum, metadata, reliable_from, notes, profile: false, holes })
 }
 
 /// How a profile is used.

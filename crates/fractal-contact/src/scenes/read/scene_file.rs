@@ -18,6 +18,7 @@ use contact_model::{
 use std::io::Read as _;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use surface_statistics::FilledPoints;
 
 /// Largest size of a scene file in bytes; a longer file is not a scene.
 const LONGEST: u64 = 1 << 20;
@@ -61,6 +62,8 @@ pub struct SceneFile {
     /// The distance from which on the tip of the instrument resolves heights, where the scene gives its
     /// radius.
     pub reliable_from: Option<f64>,
+    /// Points of the surface's map that were filled, where some were: statistics take them into account.
+    pub filled: Option<FilledPoints>,
     /// Remarks on the file, such as keys that have a new name.
     pub notes: Vec<Diagnostic>,
     /// Whether the grid was chosen for an accuracy by an estimated error that no finer grid confirms.
@@ -148,6 +151,7 @@ impl SceneFile {
             sampling: Sampling { seed: 0, surfaces: 1 },
             metadata: None,
             reliable_from: None,
+            filled: None,
             notes: Vec::new(),
             is_unconfirmed: false,
             places: Places::default(),
@@ -382,7 +386,7 @@ impl SceneFile {
                 ));
         }
         let directory = path.parent().unwrap_or(Path::new(""));
-        let FoundSurface { surface, added_body, metadata, reliable_from, notes } =
+        let FoundSurface { surface, added_body, metadata, reliable_from, filled, notes } =
             find_surface(&question, directory, &places)?;
         check_cells(&question, &surface, &places)?;
         if accuracy.is_some() {
@@ -404,6 +408,7 @@ impl SceneFile {
             sampling,
             metadata,
             reliable_from,
+            filled,
             notes,
             ..Self::new(question.models, surface, contact_modulus, request)
         };

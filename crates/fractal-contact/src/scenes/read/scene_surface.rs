@@ -11,6 +11,7 @@ use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
 use surface_gen::{Anisotropy, HeightDistribution, WaveGenerator};
+use surface_statistics::FilledPoints;
 
 /// The surface of the contact: a given one, or a random one, alone or on a body.
 #[derive(Debug, Clone, PartialEq)]
@@ -205,6 +206,8 @@ pub(crate) struct FoundSurface {
     pub metadata: Option<String>,
     /// The distance from which on the tips of its instruments resolve heights.
     pub reliable_from: Option<f64>,
+    /// Points of its map that were filled, where some were.
+    pub filled: Option<FilledPoints>,
     /// Remarks on the keys.
     pub notes: Vec<Diagnostic>,
 }
@@ -217,13 +220,20 @@ impl FoundSurface {
         reliable_from: Option<f64>,
         notes: Vec<Diagnostic>,
     ) -> Self {
-        Self { surface, added_body: None, metadata: Some(metadata), reliable_from, notes }
+        Self { metadata: Some(metadata), reliable_from, notes, ..surface.into() }
     }
 }
 
 impl From<SceneSurface> for FoundSurface {
     fn from(surface: SceneSurface) -> Self {
-        Self { surface, added_body: None, metadata: None, reliable_from: None, notes: Vec::new() }
+        Self {
+            surface,
+            added_body: None,
+            metadata: None,
+            reliable_from: None,
+            filled: None,
+            notes: Vec::new(),
+        }
     }
 }
 
@@ -277,7 +287,7 @@ fn find_map(
             .at_key(TWIN, "`twin` beside [scene.second_surface]")
             .with_help("draw the twin into a file with `fractal-contact twin`, and read that file here"));
     }
-    let scan::FileMap { mut map, mut metadata, mut reliable_from, mut notes, profile } =
+    let scan::FileMap { mut map, mut metadata, mut reliable_from, mut notes, profile, mut holes } =
         scan::read_map(file, "scene.surface", system, directory, places)?;
     if profile {
         refuse_for_profile(question, places)?;
@@ -285,8 +295,8 @@ fn find_map(
         return Ok(FoundSurface::of_file(plain, metadata, reliable_from, notes));
     }
     if let Some(second) = second {
-        let other = scan::read_second(second, &map, system, directory, places)?;
-        map = other.map;
+        let other = scan::read_second(second, (&map, holes.as_ref()), system, directory, places)?;
+        (map, holes) = (other.map, other.holes);
         reliable_from = [reliable_from, other.reliable_from].into_iter().flatten().reduce(f64::max);
         metadata += &format!("\nsecond surface\n{}", other.metadata);
         notes.extend(other.notes);
@@ -311,7 +321,9 @@ fn find_map(
         Some(body) => add(&map, body).map_err(|e| places.at_key("scene", e.to_string()))?,
     };
     let plain = SceneSurface::Plain(Surface::Heights(Arc::new(map)));
-    Ok(FoundSurface { added_body: body, ..FoundSurface::of_file(plain, metadata, reliable_from, notes) })
+    let filled = holes.as_ref().map(FilledPoints::new);
+    let found = FoundSurface::of_file(plain, metadata, reliable_from, notes);
+    Ok(FoundSurface { added_body: body, filled, ..found })
 }
 
 /// Refuses keys that cannot be combined with a profile.

@@ -6,13 +6,14 @@ use crate::scenes::read::{
 };
 use crate::scenes::tell::statistics::MeasuredMap;
 use crate::scenes::tell::{MapStatisticsTables, SurfaceReport};
-use contact_model::{Boundary, HeightMap};
+use contact_model::Boundary;
 use runs::Header;
 use std::path::Path;
 use surface_io::{
     Description, Detrend, Dimension, Metadata, Preprocessed, Preprocessing, Quantity, ReadOptions, Scan,
     SurfaceFile, Undefined,
 };
+use surface_statistics::FilledPoints;
 
 /// A few lines on a scene (`.toml`), a table (`.csv` with a header that explains itself) or a surface
 /// (anything else).
@@ -123,10 +124,10 @@ pub fn info_statistics(
     let scan = SurfaceFile::open(path, declared).and_then(SurfaceFile::scan)?;
     let found = scan.preprocessed(preprocessing)?;
     let system = system(scan.metadata());
-    let holes = without_filled(&scan, preprocessing);
+    let filled = found.holes.as_ref().map(FilledPoints::new);
     let measured = MeasuredMap {
         map: &found.map,
-        holes: holes.as_ref(),
+        filled: filled.as_ref(),
         profile: scan.metadata().profile,
         boundary: Boundary::Free,
         instrument: found.reliable_from,
@@ -158,14 +159,6 @@ pub fn info_statistics(
     // Only one exponent is shown: that of the statistics, which has an interval.
     let text = described(&scan, &found, &description(&found.map, system).without_fit());
     Ok(format!("{text}\n{}\n{}: {}\n", statistics.text(), out.display(), names.join(", ")))
-}
-
-/// The map without the points that `preprocessing` fills; `None` where it fills none.
-fn without_filled(scan: &Scan, preprocessing: &Preprocessing) -> Option<HeightMap> {
-    preprocessing.fill?;
-    let undefined = Some(Undefined::NoContact);
-    let kept = Preprocessing { fill: None, undefined, ..preprocessing.clone() };
-    scan.map(&kept).ok().filter(|map| map.undefined() > 0)
 }
 
 /// Whether lengths are in metres.

@@ -78,8 +78,8 @@ pub(crate) struct MapStatisticsTables {
 pub struct MeasuredMap<'a> {
     /// The map.
     pub map: &'a HeightMap,
-    /// The same map without the points that were filled, where there are some.
-    pub holes: Option<&'a HeightMap>,
+    /// Its points that were filled, where some were.
+    pub filled: Option<&'a FilledPoints>,
     /// Whether it is a profile, which is measured along its row.
     pub profile: bool,
     /// Whether it is a tile of an endless surface.
@@ -93,7 +93,7 @@ impl MapStatisticsTables {
     /// from the mean. Spectra are those of the filled map, and the fit ends at wavelengths
     /// at which filled points matter.
     pub fn new(measured: MeasuredMap<'_>, system: System) -> Self {
-        let MeasuredMap { map, holes, profile, boundary, instrument } = measured;
+        let MeasuredMap { map, filled, profile, boundary, instrument } = measured;
         let mut found = Self {
             system,
             profile,
@@ -111,13 +111,13 @@ impl MapStatisticsTables {
             return found;
         }
         found.heights(map);
-        let holes = holes.unwrap_or(map);
-        let filled = found.known("filled map", surface_io::filled(map));
-        let filled = filled.as_ref().unwrap_or(map);
-        found.spectra(filled, boundary);
-        let points = FilledPoints::new(holes);
-        found.fit(filled, boundary, instrument, &points);
-        found.tell_filled(holes);
+        // Of a map that was filled before, and of one whose undefined points are filled for this.
+        let points = filled.cloned().unwrap_or_else(|| FilledPoints::new(map));
+        let whole = found.known("filled map", surface_io::filled(map));
+        let whole = whole.as_ref().unwrap_or(map);
+        found.spectra(whole, boundary);
+        found.fit(whole, boundary, instrument, &points);
+        found.tell_filled(&points);
         found.distances(map, boundary);
         found
     }
@@ -241,12 +241,12 @@ impl MapStatisticsTables {
     }
 
     /// Tells that points were filled, and what this means for spectra and their fit.
-    fn tell_filled(&mut self, holes: &HeightMap) {
-        let undefined = holes.undefined();
+    fn tell_filled(&mut self, filled: &FilledPoints) {
+        let undefined = filled.count();
         if undefined == 0 {
             return;
         }
-        let share = number(rounded(100.0 * undefined as f64 / holes.heights().len() as f64, 2));
+        let share = number(rounded(100.0 * undefined as f64 / filled.of_all() as f64, 2));
         let end = self.fit.as_ref().map(|fit| TAU / fit.fitted[1]).map(|shortest| {
             let (unit, factor) = multiple(self.unit(1), shortest);
             let unit = if unit == "scene" { String::new() } else { format!(" {}", ascii(&unit)) };
@@ -335,7 +335,9 @@ impl MapStatisticsTables {
         };
         let profile = scene.surface.is_profile();
         let (boundary, instrument) = (scene.effects.boundary, scene.reliable_from);
-        let measured = MeasuredMap { map: &map, holes: None, profile, boundary, instrument };
+        // A model with a grid of its own has other points.
+        let filled = scene.filled.as_ref().filter(|filled| filled.of_all() == map.heights().len());
+        let measured = MeasuredMap { map: &map, filled, profile, boundary, instrument };
         Ok(Self::new(measured, scene.system))
     }
 
