@@ -1,4 +1,5 @@
-"""Writes what follows from the library: `_formulas.py`, `_effects.py`, properties and docstrings in `_core.pyi`.
+"""Writes what follows from the library: `_formulas.py`, `_effects.py`, `_columns.py`, properties and docstrings in
+`_core.pyi`.
 
 ``python generate.py`` with the package installed whose tables they are to have; ``python generate.py notebooks`` runs
 the notebooks and keeps what they give (nbclient, ipykernel).
@@ -38,6 +39,52 @@ def formulas():
             f'class {model["class"]}(Formula):\n    """{doc.lstrip()}\n    """\n\n    _name = "{model["name"]}"\n'
         )
     return "\n\n".join(parts)
+
+
+COLUMNS = '''"""The columns of a table of states. Written by python/generate.py from the table of quantities."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Columns:
+    """A property for each quantity that a table of states may show, in its order."""
+
+    results: dict[str, NDArray[Any]]
+
+    def _column(self, name: str) -> NDArray[np.float64]:
+        known = self.results.get(name)
+        count = len(self.results["state"])
+        return np.full(count, np.nan) if known is None else np.asarray(known, dtype=np.float64)
+
+    def _words(self, name: str) -> NDArray[np.str_]:
+        known = self.results.get(name)
+        count = len(self.results["state"])
+        return np.full(count, "") if known is None else np.asarray(known, dtype=np.str_)
+'''
+
+
+def columns():
+    """A property for each quantity that the printed table of a run may have."""
+    parts = [COLUMNS]
+    for one in fc.quantities():
+        if one["role"] not in ("answer", "of_path"):
+            continue
+        words = one["unit"] == "-"
+        kind, column = ("np.str_", "_words") if words else ("np.float64", "_column")
+        unit = "" if words else ", a pure number" if one["unit"] == "1" else f" in {one['unit']} for SI units"
+        about = (
+            f"numpy.ndarray: {one['words']}{unit}, shape (states,); {'empty' if words else 'NaN'} where there is none."
+        )
+        lines = textwrap.wrap(f'"""{about}"""', 112, break_long_words=False)
+        doc = "\n        ".join(lines)
+        parts.append(
+            f"    @property\n    def {one['name']}(self) -> NDArray[{kind}]:\n"
+            f"        {doc}\n        return self.{column}({one['name']!r})\n".replace("'", '"')
+        )
+    return "\n".join(parts)
 
 
 EFFECTS = '''"""The effects. Written by python/generate.py from the keys of `[effects]`."""
@@ -200,5 +247,6 @@ if __name__ == "__main__" and sys.argv[1:] == ["notebooks"]:
 elif __name__ == "__main__":
     (PACKAGE / "_formulas.py").write_text(formulas())
     (PACKAGE / "_effects.py").write_text(effects())
+    (PACKAGE / "_columns.py").write_text(columns())
     path = PACKAGE / "_core.pyi"
     path.write_text(stub(path.read_text()))

@@ -133,13 +133,58 @@ def test_a_named_array_is_turned():
         ({"force": 1.0, "effects": {"hardness": -1.0}}, fc.DomainError, "hardness = -1"),
         ({"force": 1.0, "outputs": ["aera"]}, ValueError, "did you mean `outputs.area`"),
         ({"force": 1.0, "outputs": "area"}, TypeError, "expected a list of names"),
-        ({"force": 1.0, "outlier": 8}, ValueError, "did you mean `scene.surface.outliers`"),
+        ({"force": 1.0, "outlier": 8}, TypeError, r"argument 'outlier'\. Did you mean 'outliers'\?$"),
+        ({"mean_presure": 1.0}, TypeError, r"^press\(\) got .* 'mean_presure'\. Did you mean 'mean_pressure'\?$"),
         ({"mean_gap": 1.0}, fc.SceneError, "the scene of this call"),
     ],
 )
 def test_what_is_missing_or_wrong(options, error, words):
     with pytest.raises(error, match=words):
         fc.press(HEIGHTS, **{"size": 1.0, "contact_modulus": 1.0, **options})
+
+
+UNITS = {"": 1.0, "%": 0.01, "kPa": 1e3, "MPa": 1e6, "N": 1.0, "mN": 1e-3, "pm": 1e-12, "nm": 1e-9, "um": 1e-6}
+UNITS |= {"N/um": 1e6, "N/mm": 1e3, "um^2": 1e-12, "mm^2": 1e-6, "mm^3": 1e-9, "um^3": 1e-18, "m^2": 1.0, "m^3": 1.0}
+UNITS |= {"J": 1.0, "nJ": 1e-9, "uJ": 1e-6, "pJ": 1e-12, "fJ": 1e-15}
+
+
+@pytest.mark.parametrize(
+    ("loads", "effects"),
+    [
+        ({"mean_pressure": ["1 kPa", "20 kPa"]}, {"boundary": "periodic"}),
+        ({"force": "50 mN"}, {"hardness": "0.3 MPa"}),
+        ({"approach": ["20 nm", "50 nm"]}, {}),
+    ],
+)
+def test_every_line_of_the_table_is_an_attribute(loads, effects):
+    pressed = fc.press(HEIGHTS, "1 mm", "1 GPa", unit="um", effects=effects, **loads)
+    lines = [line for line in pressed.summary.splitlines()[1:] if not line.startswith(("  The number", "    "))]
+    assert len(lines) > 9
+    errors = 0
+    for line in lines:
+        name, unit, rest = re.fullmatch(r"  (\w+)(?: \[(.*?)\])? +(\S.*)", line).groups()
+        for i, cell in enumerate(re.split(r"\s{2,}", rest)):
+            value, _, error = cell.partition(" +- ")
+            value = float(value) * UNITS[unit or ""]
+            # As the table rounds: a number to its error, or to four digits.
+            error = float(error) * UNITS[unit or ""] if error else 1e-3 * abs(value)
+            assert getattr(pressed, name)[i] == pytest.approx(value, abs=0.6 * error), line
+            if "+-" in cell:
+                errors += 1
+                known = pressed.error(name)[i] * abs(getattr(pressed, name)[i])
+                assert known == pytest.approx(error, rel=0.3), line
+    assert errors > 3
+    assert np.isnan(pressed.error("largest_patch")).all()
+    with pytest.raises(ValueError, match="no quantity is called 'aera': did you mean 'area'"):
+        pressed.error("aera")
+
+
+def test_a_path_has_its_columns_too():
+    effects = {"friction": 0.3}
+    rubs = fc.press(HEIGHTS, 1.0, bodies=(fc.Body(1.0, 0.3),) * 2, force=1e-3, tangential_force=1e-4, effects=effects)
+    for name in ("tangential_force", "tangential_displacement", "stick_area", "slip_area", "dissipated"):
+        assert np.isfinite(getattr(rubs, name)).all() and len(getattr(rubs, name)) == 9
+    assert np.isnan(rubs.energy).all() and rubs.branch.tolist() == [""] * 9
 
 
 def test_files(tmp_path):

@@ -56,6 +56,7 @@ def test_written_files_follow_from_the_tables(generate):
     for name, expected in (
         ("_formulas.py", generate.formulas()),
         ("_effects.py", generate.effects()),
+        ("_columns.py", generate.columns()),
         ("_core.pyi", generate.stub((PACKAGE / "_core.pyi").read_text())),
     ):
         assert (PACKAGE / name).read_text() == expected, f"{name} is out of date: python generate.py writes it"

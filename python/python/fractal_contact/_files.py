@@ -16,7 +16,7 @@ from ._arrays import checked_map
 from ._core import HeightMap, SceneFile
 from ._models import StopToken
 from ._numbers import count, is_iterable
-from ._plain import named, same_fields, with_names
+from ._plain import check_names, named, same_fields, with_names
 from .typing import PressOptions, ReadOptions
 
 
@@ -111,6 +111,7 @@ def read_surface(path: Source, **options: Unpack[ReadOptions]) -> ReadSurface:
     ReadError
         With the problem in the file, or the reason why it gives no map.
     """
+    check_names(read_surface, options)
     named, content = _source(path)
     return ReadSurface(*_core.read_surface(named, _words(options), content))
 
@@ -179,6 +180,7 @@ def channels(path: Source, **options: Unpack[ReadOptions]) -> list[dict[str, Any
     list of dict
         For each channel the metadata of `ReadSurface`; ``{"error": ...}`` for one that cannot be read beside others.
     """
+    check_names(channels, options)
     named, content = _source(path)
     return _core.channels(named, _words(options), content)
 

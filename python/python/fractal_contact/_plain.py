@@ -89,6 +89,20 @@ def with_names(options: type) -> Callable[[Function], Function]:
     return named_
 
 
+def check_names(function: Callable[..., Any], options: Collection[str]) -> None:
+    """Refuses options that the function, which shows its names, does not have, in the words of Python."""
+    known = [
+        one.name
+        for one in inspect.signature(function).parameters.values()
+        if one.kind in (one.POSITIONAL_OR_KEYWORD, one.KEYWORD_ONLY)
+    ]
+    for name in options:
+        if name not in known:
+            near = difflib.get_close_matches(name, known, 1)
+            help_ = f". Did you mean {near[0]!r}?" if near else ""
+            raise TypeError(f"{function.__name__}() got an unexpected keyword argument {name!r}{help_}")
+
+
 def pair(value: Any) -> Any:
     """Two values of a list or an array as a tuple, one of an array as a number; anything else as it is."""
     if isinstance(value, np.ndarray) and not np.ma.isMaskedArray(value):

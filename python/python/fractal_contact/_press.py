@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import errno
 import re
 import tempfile
@@ -16,13 +17,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _arrays, _core, _html
+from ._columns import Columns
 from ._core import HeightMap, SceneFile
 from ._effects import Effects
 from ._files import ReadSurface, SceneOutcome, _words, run_scene
 from ._inputs import AnyBody, Body, _body
 from ._models import StopToken
 from ._numbers import is_iterable, number
-from ._plain import same_fields, with_names
+from ._plain import check_names, same_fields, with_names
 from .typing import Detrend, PressOptions
 
 # First words of a scene that this call, or the program's `press`, has written, and the file of an array beside it.
@@ -30,6 +32,15 @@ HEADING = "# Contact of the map "
 ARRAY = "heights.npy"
 # States of the path along which a tangential force grows.
 TANGENTIAL_STATES = 8
+# Quantities whose error on the cells that were solved is a column of its own.
+SOLVER_ERRORS = (
+    "force",
+    "stiffness",
+    "tangential_stiffness",
+    "tangential_stiffness_y",
+    "tangential_stiffness_stuck",
+    "tangential_stiffness_stuck_y",
+)
 LOADS = ("mean_pressure", "force", "approach", "mean_gap")
 
 Amount = float | str
@@ -37,12 +48,16 @@ Amounts = Amount | Iterable[Amount]
 
 
 @dataclass(eq=False)
-class Pressed:
+class Pressed(Columns):
     """The contact of a map that was pressed, with one entry for each load, or for each state of a tangential path.
 
-    Numbers that a state does not have are NaN. Units are those in which the problem was given: SI units where a unit
-    was. ``results`` has every column of the program's ``results.csv``, so that ``pandas.DataFrame(pressed.results)`` is
-    a table. Two of them compare with ``==`` as wholes, to one truth value, but for the page, which has the times of its
+    Each line of the table that it prints is an attribute of the same name, such as ``area_corrected``, with one number
+    for each state, and ``error("area_corrected")`` is what stands behind +- there, over the number. Numbers that a
+    state does not have are NaN. Units are those in which the problem was given: SI units where a unit was. The table
+    itself has multiples of them that are easy to read, and ``contact_fraction`` in per cent.
+
+    ``results`` has every column of the program's ``results.csv``, so that ``pandas.DataFrame(pressed.results)`` is a
+    table. Two of them compare with ``==`` as wholes, to one truth value, but for the page, which has the times of its
     run.
 
     Parameters
@@ -83,35 +98,10 @@ class Pressed:
         notes = "".join(f"note: {note}\n" for note in self.notes)
         return f"<Pressed: {len(self.results['state'])} states>\n{self.summary}{notes}"
 
-    def _column(self, name: str) -> NDArray[np.float64]:
-        known = self.results.get(name)
-        count = len(self.results["state"])
-        return np.full(count, np.nan) if known is None else np.asarray(known, dtype=np.float64)
-
-    @property
-    def force(self) -> NDArray[np.float64]:
-        """numpy.ndarray: the normal force, shape (states,)."""
-        return self._column("force")
-
     @property
     def mean_pressure(self) -> NDArray[np.float64]:
         """numpy.ndarray: the force over the area Lx Ly of the map, shape (states,)."""
         return self.force / (self.size[0] * self.size[1])
-
-    @property
-    def approach(self) -> NDArray[np.float64]:
-        """numpy.ndarray: the approach from first touch, shape (states,); NaN with periodic boundaries."""
-        return self._column("approach")
-
-    @property
-    def mean_gap(self) -> NDArray[np.float64]:
-        """numpy.ndarray: the distance between the mean planes with periodic boundaries, shape (states,)."""
-        return self._column("mean_gap")
-
-    @property
-    def area(self) -> NDArray[np.float64]:
-        """numpy.ndarray: the real contact area, that of the cells in contact, shape (states,)."""
-        return self._column("area")
 
     @property
     def area_error(self) -> NDArray[np.float64]:
@@ -119,11 +109,6 @@ class Pressed:
         four times as large, beside which the residuals of the solver are small. NaN where none is estimated.
         """
         return self._column("area_grid_error")
-
-    @property
-    def stiffness(self) -> NDArray[np.float64]:
-        """numpy.ndarray: the derivative of the force with respect to the approach, shape (states,)."""
-        return self._column("stiffness")
 
     @property
     def stiffness_error(self) -> NDArray[np.float64]:
@@ -139,6 +124,33 @@ class Pressed:
     def gap(self) -> list[NDArray[np.float64] | None]:
         """list of numpy.ndarray: the gap of each state, shape (rows, columns), NaN at undefined points."""
         return self.fields["gap"]
+
+    def error(self, name: str) -> NDArray[np.float64]:
+        """The estimated relative error of a quantity, which the printed table shows behind +-.
+
+        It is the error of the grid and that of the solver together, as far as they are known.
+
+        Parameters
+        ----------
+        name : str
+            The quantity by its name in the table, such as ``"area"``.
+
+        Returns
+        -------
+        numpy.ndarray
+            Shape (states,), over the number itself; NaN where no error is estimated.
+        """
+        if name not in vars(Columns) or name.startswith("_"):
+            known = [one for one in vars(Columns) if not one.startswith("_")]
+            near = difflib.get_close_matches(str(name), known, 1)
+            help_ = f"did you mean {near[0]!r}?" if near else "expected one that the table shows"
+            raise ValueError(f"no quantity is called {name!r}: {help_}")
+        # The contact fraction is the area over a constant.
+        of_grid = self._column(f"{'area' if name == 'contact_fraction' else name}_grid_error")
+        solver = re.sub(r"^(tangential_stiffness)(_stuck)?(_y)?$", r"\1", name)
+        of_solver = self._column(f"{solver}_error" if name in SOLVER_ERRORS else "")
+        unknown = np.isnan(of_grid) & np.isnan(of_solver)
+        return np.where(unknown, np.nan, np.nan_to_num(of_grid) + np.nan_to_num(of_solver))
 
     def report(self, path: str | PathLike[str]) -> Path:
         """Writes the report of the program: one page of HTML with tables, pictures and sources.
@@ -278,8 +290,9 @@ def press(
     Warns
     -----
     RuntimeWarning
-        Where a load was refused or did not reach its tolerance; its numbers are then NaN, or the best that were
-        reached, and ``notes`` say why.
+        Where a load was refused or did not reach its tolerance. The other loads are solved all the same. Its row has
+        the ``status`` "refused" and NaN, or another ``status`` and the best numbers that were reached, and ``note`` in
+        ``results`` says why.
 
     Notes
     -----
@@ -296,6 +309,7 @@ def press(
     >>> pressed.force.round(9).tolist(), bool((np.diff(pressed.area) > 0).all())
     ([0.001, 0.01], True)
     """
+    check_names(press, options)
     given = {"mean_pressure": mean_pressure, "force": force, "approach": approach, "mean_gap": mean_gap}
     loads = {name: _values(value, name) for name, value in given.items() if value is not None}
     if len(loads) != 1:
