@@ -61,7 +61,7 @@ pub fn set_threads(py: Python<'_>, count: &Bound<'_, PyAny>) -> PyResult<()> {
         let shown = shown(count);
         of_value_or_type(
             count,
-            format!("count = {shown}: expected a number of threads from 1 to {MOST_THREADS}"),
+            format!("count = {shown}: expected a whole number of threads from 1 to {MOST_THREADS}"),
         )
     })?;
     let pool = new_pool(count)?;

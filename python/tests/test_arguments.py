@@ -247,8 +247,15 @@ def test_unknown_keys_are_refused():
         fc.Surface("shpere", {"radius": 1.0, "size": 1.0})
     with pytest.raises(TypeError, match="tolerence"):
         fc.Bem3d(tolerence=1e-8)
-    with pytest.raises(TypeError, match='no option is called "chanel"'):
-        fc.channels("absent.npy", chanel=1)
+    for kind in (fc.Model, fc.Formula):
+        with pytest.raises(TypeError, match=f"{kind.__name__} is no model by itself: take one of its classes"):
+            kind()
+    for call in (fc.channels, fc.read_surface, fc.press):
+        told = rf"^{call.__name__}\(\) got an unexpected keyword argument 'chanel'. Did you mean 'channel'\?$"
+        with pytest.raises(TypeError, match=told):
+            call("absent.npy", chanel=1)
+        with pytest.raises(TypeError, match=rf"^{call.__name__}\(\) got an unexpected keyword argument 'qqqq'$"):
+            call("absent.npy", qqqq=1)
     prony = fc.Effects(rheology={"kind": "prony", "weights": np.array([1.0]), "times": np.array([2.0])})
     assert prony == fc.Effects(rheology={"kind": "prony", "weights": [1.0], "times": [2.0]})
 
@@ -305,8 +312,72 @@ def test_counts_in_tables_are_whole_numbers():
     # A state without the count: NaN says so.
     both = fc.table([contact.solve(force=1e-3), CONTACT.solve(force=1.0)])
     assert both["contact_cells"].dtype == np.float64 and np.isnan(both["contact_cells"][1])
-    with pytest.raises(TypeError, match=r"states\[1\] is Error\('x'\): expected a ContactState"):
-        fc.table([CONTACT.solve(force=1.0), fc.Error("x")])
+    with pytest.raises(TypeError, match=r"states\[1\] is ValueError\('x'\): expected a ContactState"):
+        fc.table([CONTACT.solve(force=1.0), ValueError("x")])
+
+
+def test_a_refused_load_does_not_end_the_others():
+    # A pressure that the hardness cannot carry, between two that it can.
+    rough = fc.Surface.self_affine(hurst=0.8, size=1.0, rms_height=0.01)
+    pressures = [1e-3, 0.5, 1e-2]
+    effects = {"hardness": 0.1}
+    scene = fc.Scene(rough, contact_modulus=1.0, effects=effects, outputs=["area"])
+    model = fc.Bem3d(cells=32)
+    seed = fc.surface_gen.surface_seed(5, 0)
+    contact = model.prepare(scene, seed=seed)
+    with pytest.warns(RuntimeWarning, match="1 of 3 loads failed: .*0.5"):
+        rows = fc.table(contact.sweep(mean_pressure=[1e-3, 1e-2, 0.5]))
+    assert rows["status"].tolist() == ["converged", "converged", "refused"]
+    assert np.isnan(rows["area"][2]) and "0.5" in rows["note"][2] and rows["note"][0] == ""
+    # A list raises the error at its place, and the iterator goes on behind it.
+    [states] = fc.ensemble(model, scene, seed=5, surfaces=1, mean_pressure=[1e-3, 1e-2, 0.5])
+    assert [type(state).__name__ for state in states] == ["ContactState", "ContactState", "OutOfRange"]
+    with pytest.warns(RuntimeWarning, match="1 of 3 loads failed"):
+        same = fc.table(states)
+    assert same.dtype == rows.dtype and np.array_equal(same["area"], rows["area"], equal_nan=True)
+    with pytest.warns(RuntimeWarning, match="1 of 3 loads failed"):
+        pressed = fc.press(
+            np.array(rough.height_map(32, seed)),
+            1.0,
+            1.0,
+            mean_pressure=pressures,
+            detrend="none",
+            effects=effects,
+        )
+    assert pressed.results["status"].tolist() == ["converged", "refused", "converged"]
+    assert np.array_equal(pressed.area, rows["area"][[0, 2, 1]], equal_nan=True)
+    assert [bool(note) for note in pressed.results["note"]][1] and "0.5" in pressed.results["note"][1]
+    # Along a sweep without a hardness too, where any order is taken; loads behind the refused one are solved.
+    hertz = fc.Hertz().prepare(fc.Scene(SPHERE, contact_modulus=1.0))
+    with pytest.warns(RuntimeWarning, match="1 of 3 loads failed: force = -1"):
+        rows = fc.table(hertz.sweep(force=[0.1, -1.0, 0.2]))
+    assert rows["status"].tolist() == ["converged", "refused", "converged"]
+    with pytest.raises(fc.DomainError):
+        list(hertz.sweep(force=[0.1, -1.0, 0.2]))
+
+
+def test_a_load_that_misses_its_tolerance_has_the_best_numbers():
+    rough = fc.Surface.self_affine(hurst=0.8, size=1.0, rms_height=0.01).height_map(32, seed=1)
+    contact = fc.Bem3d(tolerance=1e-300).prepare(fc.Scene(rough, contact_modulus=1.0, outputs=["area"]))
+    with pytest.warns(RuntimeWarning, match="2 of 2 loads failed"):
+        rows = fc.table(contact.sweep(force=[1e-3, 1e-2]))
+    assert (rows["area"] > 0).all() and "converged" not in rows["status"].tolist()
+
+
+def test_a_table_ends_with_what_stops_it():
+    class Set:
+        def is_set(self):
+            return True
+
+    with pytest.raises(fc.Stopped):
+        fc.table(CONTACT.sweep(force=[1.0, 2.0], stop=Set()))
+
+    def loads():
+        yield CONTACT.solve(force=1.0)
+        raise fc.Error("of a generator")
+
+    with pytest.raises(fc.Error, match="of a generator"):
+        fc.table(loads())
 
 
 def test_messages_are_not_those_of_rust():

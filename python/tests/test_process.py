@@ -330,7 +330,7 @@ def test_the_variable_of_threads_is_obeyed(asked, expected):
     told = subprocess.run([sys.executable, "-c", code], check=True, capture_output=True, text=True, env=environment)
     assert int(told.stdout) == expected
     for wrong in (0, -1, 10**6):
-        with pytest.raises(ValueError, match="expected a number of threads"):
+        with pytest.raises(ValueError, match="expected a whole number of threads"):
             fc.set_threads(wrong)
 
 

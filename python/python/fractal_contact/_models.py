@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, ClassVar, Protocol
 
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from . import _core, _numbers
 from ._core import Contact, ContactState, HeightMap
-from ._errors import Error, domain_error
+from ._errors import Error, OutOfMemory, Stopped, domain_error
 from ._inputs import Scene
 from ._numbers import Seed, numbers, steps
 from .typing import Heights, Method
@@ -41,6 +42,8 @@ class Model:
     _name: ClassVar[str]
 
     def __init__(self, **options: Any) -> None:
+        if not hasattr(type(self), "_name"):
+            raise TypeError(f"{type(self).__name__} is no model by itself: take one of its classes, such as fc.Bem3d")
         self._options = {name: value for name, value in options.items() if value is not None}
         # Mistakes are told where they are made.
         self._core()
@@ -304,7 +307,8 @@ def sweep(
     Returns
     -------
     iterator of ContactState
-        The states, each as soon as it is known.
+        The states, each as soon as it is known. A load that is refused, or that does not reach its tolerance, raises
+        its error; the loads behind it can still be taken from the iterator, as `table` does.
 
     Examples
     --------
@@ -324,7 +328,31 @@ def sweep(
         return _by_area(contact, name, (values[0], values[1]), steps, stop)
     # Checked at the call, not at the first state.
     contact._check_order(name, values)
-    return (contact.solve(**{name: value}, stop=stop) for value in values)
+    return Loads(contact, name, values, stop)
+
+
+class Loads(Iterator[ContactState]):
+    """Solves of loads one after the other. Unlike a generator it goes on behind a load that raised an error.
+
+    Parameters
+    ----------
+    contact : Contact
+        A planned contact.
+    name : str
+        The keyword of the loads in `Contact.solve`.
+    values : list of float
+        The loads.
+    stop : threading.Event, optional
+        As in `sweep`.
+    """
+
+    def __init__(self, contact: Contact, name: str, values: list[float], stop: StopToken | None) -> None:
+        self._contact, self._name, self._values, self._stop = contact, name, iter(values), stop
+
+    def __next__(self) -> ContactState:
+        """Solves the next load."""
+        load: dict[str, Any] = {self._name: next(self._values)}
+        return self._contact.solve(**load, stop=self._stop)
 
 
 # Largest distance of a state from its place, in steps of the logarithm of the area.
@@ -484,9 +512,9 @@ def ensemble(
     Returns
     -------
     list of list of ContactState
-        ``[surface][load]``; a load that the model refused is the exception in its place. An exception that ends it
-        early, such as KeyboardInterrupt or `Stopped`, has the surfaces that were finished as ``finished``, a dict by
-        their number.
+        ``[surface][load]``. A load that the model refused, or that did not reach its tolerance, is the exception in its
+        place, and the others are solved; `table` makes a row of each. An exception that ends it early, such as
+        KeyboardInterrupt or `Stopped`, has the surfaces that were finished as ``finished``, a dict by their number.
 
     Raises
     ------
@@ -562,7 +590,24 @@ def combinations() -> list[dict[str, Any]]:
     return _core.combinations()
 
 
-def table(states: Iterable[ContactState]) -> NDArray[np.void]:
+def _with_refused(states: Iterable[ContactState | Error]) -> Iterator[ContactState | Error]:
+    """The states, with the error of each load of a sweep that is refused in its place."""
+    loads = iter(states)
+    while True:
+        try:
+            state = next(loads)
+        except StopIteration:
+            return
+        except (Stopped, OutOfMemory):
+            raise
+        except Error as error:
+            if not isinstance(loads, Loads):
+                raise
+            state = error
+        yield state
+
+
+def table(states: Iterable[ContactState | Error]) -> NDArray[np.void]:
     """States as a structured array with a row for each, which pandas and xarray can read.
 
     Columns are the names of ``to_dict()`` in the order of `quantities`, which are those of the tables of scenes.
@@ -570,15 +615,25 @@ def table(states: Iterable[ContactState]) -> NDArray[np.void]:
     where a state has them. Columns of counts that all states have are whole numbers; other missing numbers are NaN, and
     missing texts are empty.
 
+    A load that a model refuses has a row too, as in `press`, `ensemble` and the tables of the program: its ``status``
+    is "refused", its numbers are NaN, and the column ``note`` has the reason. A load that did not reach its tolerance
+    has the best numbers that were reached. The other loads are solved all the same.
+
     Parameters
     ----------
     states : iterable of ContactState
-        A sweep, the states of a path.
+        A sweep, the states of a path, or the states of one surface of an `ensemble`, with its errors. An error that a
+        path raises ends the path, and is raised here too.
 
     Returns
     -------
     numpy.ndarray
         Shape (states,), with the names as fields.
+
+    Warns
+    -----
+    RuntimeWarning
+        Where a load was refused or did not reach its tolerance.
 
     Examples
     --------
@@ -588,13 +643,23 @@ def table(states: Iterable[ContactState]) -> NDArray[np.void]:
     >>> rows["force"].tolist()
     [0.5, 1.0]
     """
-    rows = []
-    for i, state in enumerate(states):
-        if not isinstance(state, ContactState):
-            raise TypeError(f"states[{i}] is {state!r}: expected a ContactState")
-        rows.append(state.to_dict())
+    rows: list[dict[str, Any]] = []
+    failed = []
+    for i, state in enumerate(_with_refused(states)):
+        if isinstance(state, Error):
+            best = getattr(state, "best", None)
+            found = {"status": "refused"} if best is None else best.to_dict()
+            failed.append(str(state))
+            rows.append({**found, "note": str(state)})
+        elif isinstance(state, ContactState):
+            rows.append(state.to_dict())
+        else:
+            raise TypeError(f"states[{i}] is {state!r}: expected a ContactState, or an error of a load")
+    if failed:
+        reasons = "; ".join(dict.fromkeys(failed))
+        warnings.warn(f"{len(failed)} of {len(rows)} loads failed: {reasons}", RuntimeWarning, stacklevel=2)
     known = {name for row in rows for name in row} or {"force"}
-    names = [quantity["name"] for quantity in quantities() if quantity["name"] in known]
+    names = [name for name in [*(quantity["name"] for quantity in quantities()), "note"] if name in known]
     longest = {
         name: max(len(v) if isinstance(v := row.get(name), str) else 0 for row in rows) for name in known if rows
     }
