@@ -54,7 +54,7 @@ pub struct Tuning {
     pub applications: f64,
     /// Number of factorisations of the direct solution on one contact set.
     pub factors: f64,
-    /// Largest set that is factored (memory: 16 n^2 bytes).
+    /// Largest set that is factored (memory: 8 n^2 bytes).
     pub largest_factor: usize,
     /// Sets up to this size are always factored: the result is exact and costs a millisecond or two.
     pub always_factored: usize,

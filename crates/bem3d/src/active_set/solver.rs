@@ -357,7 +357,7 @@ impl<'a> Solver<'a> {
         if limits.factor
             && !bounds.is_reached(&now.p)
             && planner.factors(set.len(), recipe.window)
-            && let Some(exact) = eliminate(problem, &set, *target)
+            && let Some(exact) = eliminate(problem, &set, *target, stop)?
         {
             self.reach = tuning.candidates * exact.d;
             self.advance(exact);
@@ -426,13 +426,26 @@ impl<'a> Solver<'a> {
 
 /// Removes cells in tension from a small superset until none is left; p, q and d are exact up to rounding.
 /// `None` where no cell is left or one would have to be at its upper bound.
-fn eliminate(problem: &mut Problem, superset: &CellSet, target: Control) -> Option<Pressure> {
+///
+/// # Errors
+/// [`Interrupted`] by the stop.
+fn eliminate(
+    problem: &mut Problem,
+    superset: &CellSet,
+    target: Control,
+    stop: Stop<'_>,
+) -> Result<Option<Pressure>, Interrupted> {
     let mut set = superset.clone();
     loop {
         let z = problem.candidates.gaps(&set);
         problem.operators.plans.solves += 1;
-        let factored = || Some(Factor::new(problem.operators.table(), &set)?.solve_pair(&z));
-        let (q, w) = problem.operators.recorder().timed(Part::Factor, factored)?;
+        let factored = || {
+            let factor = Factor::until(problem.operators.table(), &set, stop)?;
+            Ok(factor.map(|factor| factor.solve_pair(&z)))
+        };
+        let Some((q, w)) = problem.operators.recorder().timed(Part::Factor, factored)? else {
+            return Ok(None);
+        };
         let d = match target {
             Control::Force(force) => (force + w.iter().sum::<f64>()) / q.iter().sum::<f64>(),
             Control::Approach(d) => d,
@@ -440,10 +453,11 @@ fn eliminate(problem: &mut Problem, superset: &CellSet, target: Control) -> Opti
         let p: Vec<f64> = q.iter().zip(&w).map(|(q, w)| d * q - w).collect();
         let contact = set.filter(&p, |p| p > 0.0);
         if contact.len() == set.len() {
-            return (!problem.bounds.is_reached(&p)).then_some(Pressure { contact: set, p, d, q: Some(q) });
+            let fits = !problem.bounds.is_reached(&p);
+            return Ok(fits.then_some(Pressure { contact: set, p, d, q: Some(q) }));
         }
         if contact.is_empty() {
-            return None;
+            return Ok(None);
         }
         set = contact;
     }

@@ -19,7 +19,7 @@ const ATTRACTION: f64 = 200.0;
 /// window is the grid, and its candidates are many times as many cells as touch.
 const SCATTERED: f64 = 2.2;
 /// A Cholesky factor, bytes for each square of its cells ...
-const FACTOR: f64 = 16.0;
+const FACTOR: f64 = 8.0;
 /// ... and what products of matrices reserve once on each thread, here on one, twice the largest cache: of 32 MB. It is
 /// address space, of which little is touched.
 const PRODUCTS: f64 = 6.8e7;

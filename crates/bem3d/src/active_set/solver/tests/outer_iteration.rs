@@ -120,7 +120,7 @@ fn a_cell_without_pressure_is_not_in_contact() {
     }
     // First touch: no cell carries anything, whatever the set.
     let mut flat = problem(EIGHT, &[0.0; 64], Tuning::DEFAULT);
-    assert!(eliminate(&mut flat, &set(&[0, 1, 2, 3]), Control::Approach(0.0)).is_none());
+    assert!(eliminate(&mut flat, &set(&[0, 1, 2, 3]), Control::Approach(0.0), &never).unwrap().is_none());
 }
 
 #[test]
