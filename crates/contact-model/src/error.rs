@@ -217,14 +217,18 @@ fn shown(value: f64, beside: &[&str]) -> String {
     if beside.iter().any(|text| text.contains(&short)) { plain(value) } else { short }
 }
 
-/// A number of bytes.
+/// A number of bytes, in the unit that suits it.
 struct Gigabytes(f64);
 
 impl fmt::Display for Gigabytes {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let gigabytes = self.0 * 1e-9;
-        if (1e-2..1.0).contains(&gigabytes) {
+        if gigabytes == 0.0 || (1e-2..1.0).contains(&gigabytes) {
             write!(f, "{:.0} MB", 1e3 * gigabytes)
+        } else if (1e-4..1e-2).contains(&gigabytes) {
+            write!(f, "{:.1} MB", 1e3 * gigabytes)
+        } else if (0.0..1e-4).contains(&gigabytes) {
+            write!(f, "{:.0} kB", 1e6 * gigabytes)
         } else if (1.0..1e6).contains(&gigabytes) {
             write!(f, "{gigabytes:.1} GB")
         } else {
@@ -279,6 +283,21 @@ mod tests {
         assert_eq!(below.to_string(), "x = 0 is below 1.5, the smallest value for which the model holds");
         let error = Error::domain("x", beyond, "a number in [0, 1]");
         assert!(error.to_string().starts_with("x = 1.0000000000000002: expected"), "{error}");
+    }
+
+    #[test]
+    fn bytes_have_the_unit_that_suits_them() {
+        for (bytes, text) in [
+            (0.0, "0 MB"),
+            (2.3e4, "23 kB"),
+            (1e5, "0.1 MB"),
+            (5.12e6, "5.1 MB"),
+            (6.9e7, "69 MB"),
+            (6.4e9, "6.4 GB"),
+            (2.7e22, "2.7e13 GB"),
+        ] {
+            assert_eq!(Gigabytes(bytes).to_string(), text);
+        }
     }
 
     #[test]
