@@ -4,6 +4,7 @@ import inspect
 import subprocess
 import sys
 import typing
+from pathlib import Path
 
 import pytest
 
@@ -140,7 +141,7 @@ def test_the_words_are_those_of_the_library():
     listed = str(caught.value).split("there are ")[1].replace(" and ", ", ").split(", ")
     assert set(listed) == set(typing.get_args(words.Output))
     with pytest.raises(TypeError, match="no option is called") as caught:
-        fc.read_surface("absent.npy", absent=1)
+        _core.read_surface(Path("absent.npy"), {"absent": 1})
     listed = str(caught.value).split("there are ")[1].split(", ")
     assert set(listed) == set(words.ReadOptions.__annotations__)
     with pytest.raises(ValueError, match="no surface is of the kind") as caught:
