@@ -15,7 +15,7 @@ use faer::linalg::matmul::triangular::{self, BlockStructure};
 #[cfg(feature = "faer")]
 use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
 #[cfg(feature = "faer")]
-use faer::{Accum, Conj, Mat, MatMut, get_global_parallelism};
+use faer::{Accum, Conj, Mat, MatMut, Spec, get_global_parallelism};
 
 /// Without the feature `faer` there is no factor, and every set is solved by iteration.
 #[cfg(not(feature = "faer"))]
@@ -109,7 +109,7 @@ impl Factor {
 fn factor(mut matrix: MatMut<'_, f64>, stop: Stop<'_>) -> Result<bool, Interrupted> {
     let (n, parallelism) = (matrix.nrows(), get_global_parallelism());
     let largest = if n <= WITHOUT_BLOCKS { n.max(1) } else { BLOCK.min(n.next_power_of_two() / 2) };
-    let room = llt::factor::cholesky_in_place_scratch::<f64>(largest, parallelism, Default::default());
+    let room = llt::factor::cholesky_in_place_scratch::<f64>(largest, parallelism, Spec::default());
     let mut room = MemBuffer::new(room);
     let mut begin = 0;
     while begin < n {
@@ -120,7 +120,7 @@ fn factor(mut matrix: MatMut<'_, f64>, stop: Stop<'_>) -> Result<bool, Interrupt
         let rest = matrix.as_mut().get_mut(begin.., begin..);
         let (mut diagonal, _, mut below, mut right) = rest.split_at_mut(block, block);
         let (none, stack) = (llt::factor::LltRegularization::default(), MemStack::new(&mut room));
-        let settings = Default::default();
+        let settings = Spec::default();
         if llt::factor::cholesky_in_place(diagonal.as_mut(), none, parallelism, stack, settings).is_err() {
             return Ok(false);
         }
