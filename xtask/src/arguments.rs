@@ -14,6 +14,7 @@ use paper::evaluation::{AccuracyTarget, EnsembleModel, Request};
 use runs::ShardChoice;
 use sizes::{Both, LineSizes, Maps, ReducedSizes, Solid, SolveSizes};
 use std::path::PathBuf;
+pub use studies::WebArguments;
 use studies::{
     AccuracyCost, Audit, BookArguments, BudgetCheck, PartialSlipArguments, Reference, StabilityArguments,
     TwoCasesArguments,
@@ -142,6 +143,8 @@ pub enum XtaskCommand {
     /// Checks the links and formulas of every Markdown file, the commands and pictures of the book, and its
     /// pages where mdbook is installed.
     Book(BookArguments),
+    /// Builds the page of the browser: a folder that a server of files serves, and one file that opens from a folder.
+    Web(WebArguments),
 }
 
 impl XtaskCommand {

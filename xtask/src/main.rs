@@ -13,6 +13,7 @@ mod arguments;
 mod book;
 mod cluster;
 mod hard_cases;
+mod web;
 
 use arguments::{BenchArguments, ExponentArguments, Redraw, TuningArguments, XtaskArguments, XtaskCommand};
 use clap::{CommandFactory as _, Parser as _};
@@ -77,6 +78,7 @@ fn solve(command: &XtaskCommand, typed: &[String]) -> Result<ExitCode> {
             Ok(ExitCode::SUCCESS)
         }
         XtaskCommand::Book(options) => book::book(options.pictures),
+        XtaskCommand::Web(options) => web::build(options).map(|()| ExitCode::SUCCESS),
         _ => study(command, typed),
     }
 }

@@ -4,10 +4,10 @@
 use crate::arguments::{LOADS, PRESS_DETREND, PressArguments, flag_of};
 use contact_model::units::{amount, ascii};
 use fractal_contact::scenes::{
-    AskedFile, AskedSurface, Diagnostic, Distributed, Error, FieldFormat, Material, Numerics, Question,
-    Result, SceneFile, meant_by_output,
+    AskedFile, AskedSurface, Diagnostic, Error, Material, MissingKey, Numerics, Question, Result, SceneFile,
+    meant_by_output, missing_keys,
 };
-use fractal_contact::{Boundary, Coupling, Friction, Output};
+use fractal_contact::{Coupling, Friction, Output};
 use runs::cluster::{quoted, toml};
 use std::fmt::Write as _;
 use std::path::{Component, Path, PathBuf};
@@ -21,12 +21,12 @@ pub const WORDS: &str = "the scene of these flags";
 
 /// A flag that a command lacks.
 struct Lacking {
-    flag: &'static str,
+    flag: String,
     example: String,
     /// What the flag is, for the message.
     why: String,
-    /// Another flag that can be given instead, and what it is.
-    instead: Option<(&'static str, &'static str)>,
+    /// Another flag that can be given in its place, and what it is.
+    instead: Option<(String, String)>,
 }
 
 /// The scene of a map, at the place where it will stand.
@@ -86,18 +86,18 @@ fn scene_of(asked: &PressArguments, at: &Path, profile: bool, words: &str) -> Re
 fn lacking(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
     let mut lacking = lacking_of_map(asked, map);
     lacking.extend(lacking_of_bodies(asked));
-    let of_load = |flag, example: &str, why: &str, instead| Lacking {
-        flag,
+    let of_load = |flag: &str, example: &str, why: &str, instead: Option<(&str, &str)>| Lacking {
+        flag: flag.to_owned(),
         example: example.to_owned(),
         why: why.to_owned(),
-        instead,
+        instead: instead.map(|(flag, why)| (flag.to_owned(), why.to_owned())),
     };
     if asked.load().is_none() {
         lacking.push(of_load(
             "--pressure",
             "1 MPa,10 MPa",
             "mean pressure over the area of the map, one value or several",
-            Some(("--force", "normal force, instead of --pressure; or --approach, counted from first touch")),
+            Some(("--force", "normal force; or --approach, counted from first touch")),
         ));
     }
     if asked.has_friction() && asked.tangential_force.is_none() {
@@ -125,33 +125,25 @@ fn held_by_friction(asked: &PressArguments) -> Option<f64> {
 
 /// Flags that say what the file of the map does not hold: the unit, the size, and what undefined points are.
 fn lacking_of_map(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
-    let has = |key: &str| asked.file.value(key).is_some();
-    let mut lacking = Vec::new();
-    let mut add = |flag, example: &str, why: String, instead| {
-        lacking.push(Lacking { flag, example: example.to_owned(), why, instead });
+    let given = |key: &str| asked.file.value(key).map(str::to_owned);
+    let lacking = |MissingKey { key, example, why, instead, .. }: MissingKey| {
+        let instead = instead.map(|(key, why)| (flag_of(key), why.to_owned()));
+        Lacking { flag: flag_of(key), example: example.to_owned(), why, instead }
     };
-    if map.unit.is_none() && !has("unit") && !has("height_scale") {
-        let why = format!("unit of the heights, which this file ({}) does not hold", map.format);
-        add("--unit", "nm", why, None);
-    }
-    if map.size.is_none() && !has("size") && !has("cell") {
-        let why = format!("side of one of the {} x {} cells of the map", map.columns, map.rows);
-        add("--cell", "0.5 um", why, Some(("--size", "side of the whole map, instead of --cell")));
-    }
-    if map.undefined > 0 && !has("undefined") && !has("fill") && asked.file.value("crop") != Some("defined") {
-        let why = format!("{} points have no height: with no_contact they cannot touch", map.undefined);
-        let instead = ("--fill", "gives them a height, instead of --undefined: `--fill neighbours`");
-        add("--undefined", "no_contact", why, Some(instead));
-    }
-    lacking
+    missing_keys(map, &given).into_iter().map(lacking).collect()
 }
 
 /// Flags of the bodies that are missing. Friction needs the bodies themselves and not only E*.
 fn lacking_of_bodies(asked: &PressArguments) -> Vec<Lacking> {
     let bodies = asked.problem.value("bodies");
     let mut lacking = Vec::new();
-    let mut add = |flag, example: &str, why: &str, instead| {
-        lacking.push(Lacking { flag, example: example.to_owned(), why: why.to_owned(), instead });
+    let mut add = |flag: &str, example: &str, why: &str, instead: Option<(&str, &str)>| {
+        lacking.push(Lacking {
+            flag: flag.to_owned(),
+            example: example.to_owned(),
+            why: why.to_owned(),
+            instead: instead.map(|(flag, why)| (flag.to_owned(), why.to_owned())),
+        });
     };
     if asked.has_friction() && bodies.is_none() {
         let why = "Young's modulus and Poisson's ratio of both bodies, which friction needs";
@@ -162,7 +154,7 @@ fn lacking_of_bodies(asked: &PressArguments) -> Vec<Lacking> {
             "--bodies",
             "210 GPa 0.3, 210 GPa 0.3",
             "Young's modulus and Poisson's ratio of both bodies, here steel on steel",
-            Some(("--contact-modulus", "E* of the pair, instead of --bodies: '115 GPa' is steel on steel")),
+            Some(("--contact-modulus", "E* of the pair, such as '115 GPa' for steel on steel")),
         );
     }
     if asked.has_friction() && bodies.is_none_or(couple) && asked.coupling.is_none() {
@@ -182,7 +174,7 @@ fn mistake(asked: &PressArguments, lacking: &[Lacking]) -> Option<String> {
     let mut filled = asked.clone();
     for Lacking { flag, example, .. } in lacking {
         let text = Some(example.clone());
-        match *flag {
+        match flag.as_str() {
             "--unit" => filled.file.add("unit", example),
             "--cell" => filled.file.add("cell", example),
             "--undefined" => filled.file.add("undefined", example),
@@ -212,8 +204,9 @@ fn missing_flags(asked: &PressArguments, lacking: &[Lacking]) -> String {
     let are_missing = if lacking.len() == 1 { "a flag is missing" } else { "some flags are missing" };
     let _ = write!(text, "{are_missing} for the contact of {}:", asked.map.display());
     for Lacking { flag, why, instead, .. } in lacking {
-        for (flag, why) in std::iter::once((*flag, why.as_str())).chain(*instead) {
-            let _ = write!(text, "\n  {flag:<19} {why}");
+        let _ = write!(text, "\n  {flag:<19} {why}");
+        if let Some((other, why)) = instead {
+            let _ = write!(text, "\n  {other:<19} {why}, instead of {flag}");
         }
     }
     if mistake.is_some() {
@@ -222,7 +215,7 @@ fn missing_flags(asked: &PressArguments, lacking: &[Lacking]) -> String {
     let mut command = vec!["fractal-contact".to_owned()];
     command.extend(std::env::args_os().skip(1).map(|word| quoted(&word.to_string_lossy())));
     for Lacking { flag, example, .. } in lacking {
-        command.extend([(*flag).to_owned(), quoted(example)]);
+        command.extend([flag.clone(), quoted(example)]);
     }
     let examples: Vec<String> = lacking.iter().map(|lacking| format!("'{}'", lacking.example)).collect();
     let _ = write!(
@@ -302,7 +295,7 @@ fn question(asked: &PressArguments, at: &Path, profile: bool) -> Result<Question
             keys.into_iter().filter_map(|(key, value)| Some(format!("{key} = {}", value?))).collect();
         set("effects.friction", &format!("{{ {} }}", keys.join(", ")))?;
     }
-    outputs(&mut question, asked, profile);
+    question.request_usual_outputs(profile);
     for name in &asked.outputs {
         add_output(&mut question, name.trim())?;
     }
@@ -332,29 +325,6 @@ fn file(asked: &PressArguments, at: &Path) -> Result<AskedFile, Diagnostic> {
     match question.surface {
         Some(AskedSurface::File(file)) => Ok(*file),
         _ => Ok(AskedFile::default()),
-    }
-}
-
-/// Requests the quantities and pictures that `press` shows of a map or of a profile.
-fn outputs(question: &mut Question, asked: &PressArguments, profile: bool) {
-    let periodic = question.effects.boundary == Boundary::Periodic;
-    let requested = &mut question.outputs;
-    requested.outputs.area = true;
-    // A half-plane has no approach and no stiffness, because its displacements have no zero at infinity.
-    requested.outputs.stiffness = periodic || !profile;
-    requested.outputs.mean_gap = periodic;
-    requested.outputs.contact_patches = true;
-    let both = || vec![FieldFormat::Npy, FieldFormat::Png];
-    requested.files = vec![(Output::Pressure, both()), (Output::Gap, both())];
-    if asked.has_friction() {
-        // Normal load and half and all of the tangential one: the pressure changes little meanwhile.
-        requested.files = vec![(Output::Pressure, both()), (Output::StickSlip, both())];
-        requested.drawn_states = Some(vec![TANGENTIAL_STATES / 2, TANGENTIAL_STATES]);
-        requested.outputs.stick_area = true;
-        requested.curves = true;
-    } else {
-        requested.distributions = vec![Distributed::Pressure, Distributed::Gap];
-        requested.grid_error = asked.problem.value("accuracy").is_none();
     }
 }
 

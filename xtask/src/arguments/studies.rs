@@ -400,3 +400,14 @@ pub struct BookArguments {
     #[arg(long)]
     pub pictures: bool,
 }
+
+/// Flags of the page of the browser.
+#[derive(Debug, Args)]
+pub struct WebArguments {
+    /// Folder of the page.
+    #[arg(long, default_value = "web/dist")]
+    pub out: PathBuf,
+    /// Compile the standard library too, from its sources, where the target cannot be installed.
+    #[arg(long)]
+    pub build_std: bool,
+}

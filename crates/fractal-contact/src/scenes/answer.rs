@@ -3,17 +3,19 @@
 use crate::scenes::plan::{Cost, ModelOnSurface, ModelPlan, Plan, calibration};
 use crate::scenes::read::{Result, SceneFile, System, effect_lines, number};
 use crate::scenes::run::{
-    Concerned, FieldFile, ModelResult, Options, SceneOutcome, SharedStop, SolvedUnit, StateRecord, Warning,
-    field_pictures, remove_trials, scene_jobs, take_trial, units,
+    Concerned, FieldFile, Folder, ModelResult, Options, SceneOutcome, SharedStop, SolvedUnit, StateRecord,
+    Warning, field_pictures, is_hidden, remove_trials, scene_jobs, take_trial, units,
 };
 use crate::scenes::tell::{
     MapStatisticsTables, Report, ResultFolder, StateTable, columns, files, manifest, summary,
 };
+use contact_model::Stop;
 use contact_model::units::ascii;
 use runs::cluster::{ShardPlan, ShardReport, ShardRun, run_shard};
-use runs::{Checkpoint, Failure, Header, JobRun, Progress, Shard, Store, Threads, run_stored};
-use std::path::PathBuf;
-use std::time::Instant;
+use runs::{Checkpoint, Failure, Header, Job, JobRun, Progress, Shard, Store, Threads, run_stored};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use web_time::Instant;
 
 /// Answers a scene: every model on every surface under every load, and writes what is asked for.
 ///
@@ -52,7 +54,8 @@ pub fn run(
     }
     take_trial(scene, &options.out, &store);
     let units = units(scene);
-    let jobs = scene_jobs(scene, &options.out);
+    let files = Folder::from(&*options.out);
+    let jobs = scene_jobs(scene, &files);
     let run = JobRun { store: &store, threads, progress, stop };
     let done = run_stored(&title(scene), &jobs, run);
     let mut results = done.into_iter().map(Option::transpose).collect::<Result<Vec<_>>>()?;
@@ -64,9 +67,7 @@ pub fn run(
     let mut outcome =
         SceneOutcome { requested: scene.request.count() * units.len(), ..SceneOutcome::default() };
     let answers = SceneAnswers { scene, units: &units, results: &results };
-    answers.count(options, &mut outcome);
-    let written = answers.write(plan, options, start, &mut outcome)?;
-    outcome.files.extend(written);
+    answers.tell(plan, &files, start, &mut outcome)?;
     outcome.files.push(options.out.join("manifest.json"));
     if !outcome.stopped {
         field_pictures::sweep(&options.out);
@@ -80,6 +81,66 @@ pub fn run(
     }
     manifest::write(scene, plan, options, &outcome)?;
     Ok(outcome)
+}
+
+/// A run in memory.
+#[derive(Debug, Clone, Default)]
+pub struct RunInMemory {
+    /// What came of it; its files have no directory.
+    pub outcome: SceneOutcome,
+    /// The bytes of its files by their names: tables, pictures, fields and the report.
+    pub files: BTreeMap<String, Arc<[u8]>>,
+    /// The report without the frame of its page, for a page that has another one.
+    pub report: String,
+}
+
+/// Answers a scene in memory: nothing is read from a file system or written to one, so that a scene can be answered
+/// where there is none. The jobs are solved one after the other on this thread, to the same numbers as [`run`].
+///
+/// `solved` receives each state as soon as it is solved, as HTML: its numbers and its fields as the report shows
+/// them.
+///
+/// # Errors
+/// As [`crate::scenes::check`]; [`crate::scenes::Error::Run`] for what only shows at full size.
+pub fn run_in_memory(
+    scene: &SceneFile,
+    plan: &Plan,
+    progress: &dyn Progress,
+    stop: Stop<'_>,
+    solved: &dyn Fn(&str),
+) -> Result<RunInMemory> {
+    let start = Instant::now();
+    let folder = Folder::in_memory();
+    let units = units(scene);
+    let jobs = scene_jobs(scene, &folder);
+    progress.begin(&title(scene), jobs.iter().map(Job::cost).sum());
+    let mut results = Vec::with_capacity(jobs.len());
+    for (unit, job) in units.iter().zip(&jobs) {
+        let newest = |result: &ModelResult| {
+            let states = &result.states[result.states.len().saturating_sub(1)..];
+            let unit = SolvedUnit { model: unit.numerics(scene).name(), surface: unit.surface, states };
+            let states = StateTable::new(scene, vec![unit], title(scene));
+            let view = |file: FieldFile<'_>| field_pictures::view(&folder, file);
+            let outcome = SceneOutcome::default();
+            let report = Report { states: &states, plan, outcome: &outcome, statistics: None, view: &view };
+            // A picture that cannot be encoded is an error of the report at the end.
+            solved(&report.of_one_state().unwrap_or_default());
+            Ok(())
+        };
+        results.push(if stop.stops() {
+            None
+        } else {
+            Some(job.go_on(ModelResult::default(), Some(&newest), progress, stop)?)
+        });
+        progress.advance(job.cost(), false);
+    }
+    progress.end();
+    let mut outcome =
+        SceneOutcome { requested: scene.request.count() * units.len(), ..SceneOutcome::default() };
+    let answers = SceneAnswers { scene, units: &units, results: &results };
+    let report = answers.tell(plan, &folder, start, &mut outcome)?;
+    let files = folder.into_files().into_iter().filter(|(name, _)| !is_hidden(name)).collect();
+    Ok(RunInMemory { outcome, files, report })
 }
 
 /// The result of each model on each surface; `None` where it was not begun.
@@ -112,7 +173,7 @@ pub fn run_scene_shard(
     if scene.accuracy.is_some() {
         take_trial(scene, &options.out, &Store::view(&options.out)?);
     }
-    let jobs = scene_jobs(scene, &options.out);
+    let jobs = scene_jobs(scene, &Folder::from(&*options.out));
     run_shard(plan, &jobs, shard, ShardRun { out: &options.out, threads: options.threads, progress, stop })
 }
 
@@ -122,21 +183,18 @@ impl<'a> SceneAnswers<'a> {
         units.iter().zip(results).filter_map(|(unit, result)| Some((unit, result.as_ref()?)))
     }
 
-    /// Writes tables, curves and the report, completes the outcome by what they show, and returns their paths.
-    fn write(
+    /// Counts the states, writes tables, curves and the report, and completes the outcome by all of them. The report
+    /// is returned without the frame of its page.
+    fn tell(
         &self,
         plan: &Plan,
-        options: &Options,
+        folder: &Folder,
         start: Instant,
         outcome: &mut SceneOutcome,
-    ) -> Result<Vec<PathBuf>> {
+    ) -> Result<String> {
+        self.count(folder, outcome);
         let scene = self.scene;
-        let solved = self.begun().map(|(unit, result)| SolvedUnit {
-            model: unit.numerics(scene).name(),
-            surface: unit.surface,
-            states: result.states.as_slice(),
-        });
-        let states = StateTable::new(scene, solved.collect(), title(scene));
+        let states = self.table();
         let statistics =
             scene.requested.statistics.then(|| MapStatisticsTables::of_scene(scene)).transpose()?;
         if let Some(statistics) = &statistics {
@@ -145,9 +203,8 @@ impl<'a> SceneAnswers<'a> {
         }
         let mut written = Vec::new();
         let mut write = |name: &str, bytes: Vec<u8>| -> Result<()> {
-            let path = options.out.join(name);
-            runs::files::write_whole(&path, &bytes)?;
-            written.push(path);
+            folder.write(name.to_owned(), &bytes)?;
+            written.push(folder.path(name));
             Ok(())
         };
         let results = states.results()?;
@@ -157,15 +214,27 @@ impl<'a> SceneAnswers<'a> {
         outcome.actual = self.actual();
         outcome.peak_memory = runs::peak_memory();
         outcome.seconds = start.elapsed().as_secs_f64();
-        let view = |file: FieldFile<'_>| field_pictures::view(&options.out, file);
+        let view = |file: FieldFile<'_>| field_pictures::view(folder, file);
         let statistics = statistics.as_ref();
         let report = Report { states: &states, plan, outcome, statistics, view: &view };
-        write("report.html", report.html()?.into_bytes())?;
-        Ok(written)
+        let report = report.page()?;
+        write("report.html", report.html().into_bytes())?;
+        outcome.files.extend(written);
+        Ok(report.content())
+    }
+
+    /// The states of all results.
+    fn table(&self) -> StateTable<'a> {
+        let solved = self.begun().map(|(unit, result)| SolvedUnit {
+            model: unit.numerics(self.scene).name(),
+            surface: unit.surface,
+            states: result.states.as_slice(),
+        });
+        StateTable::new(self.scene, solved.collect(), title(self.scene))
     }
 
     /// Adds counts, notes and files of all results to the outcome.
-    fn count(&self, options: &Options, outcome: &mut SceneOutcome) {
+    fn count(&self, folder: &Folder, outcome: &mut SceneOutcome) {
         outcome.stopped |= self.results.iter().any(|result| result.as_ref().is_none_or(|r| !r.complete));
         let mut missed: Vec<String> = Vec::new();
         for (unit, result) in self.begun() {
@@ -182,8 +251,8 @@ impl<'a> SceneAnswers<'a> {
                 } else if let Some(error) = self.not_converged(record) {
                     missed.push(error);
                 }
-                let shown = record.files.iter().filter(|file| !file.is_hidden());
-                outcome.files.extend(shown.map(|file| options.out.join(&file.name)));
+                let shown = record.files.iter().filter(|file| !is_hidden(&file.name));
+                outcome.files.extend(shown.map(|file| folder.path(&file.name)));
             }
         }
         outcome.notes.extend(note_on_missed(&missed));

@@ -81,7 +81,7 @@ mod run;
 mod tell;
 
 pub use analysis::AccuracyTarget;
-pub use answer::{run, run_scene_shard};
+pub use answer::{RunInMemory, run, run_in_memory, run_scene_shard};
 pub use plan::calibration::seconds_of_rough_sweep;
 pub use plan::cost::Cost;
 pub use plan::model_on_surface::FORMAT;
@@ -97,6 +97,7 @@ pub use read::generated_surface::{AskedTwin, GeneratedSurface, write_map, write_
 pub use read::key::SceneKey;
 pub use read::load_kind::PrescribedLoad;
 pub use read::loads::{AskedLoads, LoadList, LoadRequest};
+pub use read::missing_keys::{MissingKey, missing_keys};
 pub use read::numerics::Numerics;
 pub use read::outputs::{FieldFormat, RequestedOutputs};
 pub use read::path::{AskedStep, PathPiece};
@@ -112,4 +113,5 @@ pub use run::pilot::SharedStop;
 pub use run::scene_job::{SceneJob, jobs};
 pub use run::state_result::ModelResult;
 pub use run::warnings::{StateNotes, Warning};
-pub use tell::info::{info, info_json, info_statistics};
+pub use tell::info::{DescribedFile, describe_file, info, info_json, info_statistics};
+pub use tell::page::page_parts;

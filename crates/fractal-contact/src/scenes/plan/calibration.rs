@@ -10,7 +10,8 @@ use crate::scenes::read::{
 use bem3d::{BYTES_PER_CELL, solve_bytes};
 use contact_model::{Adhesion, Cells, ContactState, Coupling, Friction, Surface};
 use mdr1d::BYTES_PER_ELEMENT;
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// Cells a side, and elements, of the solves that the cost is predicted from.
 const CALIBRATION_CELLS: usize = 65;

@@ -7,6 +7,7 @@ use crate::scenes::read::{
 };
 use contact_model::Size;
 use std::path::PathBuf;
+use std::sync::Arc;
 use surface_gen::TwinSpectrum;
 use surface_io::{
     AlignLines, Axes, Border, ChannelChoice, Crop, Decimal, Detrend, Dimension, Fill, Format, Mirror,
@@ -50,6 +51,8 @@ pub struct AskedSelfAffine {
 pub struct AskedFile {
     /// Its path, from the folder of the scene.
     pub path: Option<PathBuf>,
+    /// The bytes of the file, where they are in memory and are not read from `path`. No key of a scene says this.
+    pub content: Option<Arc<[u8]>>,
     /// How the file is read.
     pub declared: ReadOptions,
     /// Steps of preprocessing. The field `detrend` below replaces the one in it.

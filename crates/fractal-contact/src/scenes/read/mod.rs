@@ -11,6 +11,7 @@ pub(crate) mod generated_surface;
 pub(crate) mod key;
 pub(crate) mod load_kind;
 pub(crate) mod loads;
+pub(crate) mod missing_keys;
 pub(crate) mod numerics;
 pub(crate) mod other_words;
 pub(crate) mod outputs;

@@ -13,10 +13,10 @@ use crate::scenes::read::numerics::{self, print_options, read_models};
 use crate::scenes::read::outputs::{OUTPUT_KEYS, print_outputs, set_output};
 use crate::scenes::read::path::{AskedStep, PATH_KEYS, read_steps};
 use crate::scenes::read::{
-    Diagnostic, EFFECT_KEYS, Entries, Entry, Numerics, ReadResult, RegisteredModel, RequestedAccuracy,
-    RequestedOutputs, System, nearest, other_words, printed, read_effects, read_outputs,
+    Diagnostic, Distributed, EFFECT_KEYS, Entries, Entry, FieldFormat, Numerics, ReadResult, RegisteredModel,
+    RequestedAccuracy, RequestedOutputs, System, nearest, other_words, printed, read_effects, read_outputs,
 };
-use contact_model::{Body, Effects, Pair};
+use contact_model::{Body, Boundary, Effects, Friction, Output, Pair};
 use std::fmt::Write as _;
 use surface_io::{Dimension, Quantity};
 
@@ -393,6 +393,37 @@ impl Question {
                 .with_help("steps are counted from 0 and set in their order")));
         };
         PATH_KEYS.set(step, entry, context)
+    }
+
+    /// Requests the quantities and pictures that one looks at first, of a map or of a profile: the contact area, the
+    /// stiffness, connected contacts, pressure and gap, and the error of the grid, or with friction the cells that
+    /// stick. The effects, the loads and the accuracy are to be set before.
+    pub fn request_usual_outputs(&mut self, profile: bool) {
+        let periodic = self.effects.boundary == Boundary::Periodic;
+        let requested = &mut self.outputs;
+        requested.outputs.area = true;
+        // A half-plane has no approach and no stiffness, because its displacements have no zero at infinity.
+        requested.outputs.stiffness = periodic || !profile;
+        requested.outputs.mean_gap = periodic;
+        requested.outputs.contact_patches = true;
+        let both = || vec![FieldFormat::Npy, FieldFormat::Png];
+        requested.files = vec![(Output::Pressure, both()), (Output::Gap, both())];
+        if self.effects.friction == Friction::default() {
+            requested.distributions = vec![Distributed::Pressure, Distributed::Gap];
+            requested.grid_error = self.accuracy.is_none();
+        } else {
+            requested.files = vec![(Output::Pressure, both()), (Output::StickSlip, both())];
+            requested.outputs.stick_area = true;
+            requested.curves = true;
+            // Half and all of the last piece of the path, where the tangential load grows: the pressure changes little
+            // meanwhile.
+            if let Some(AskedLoads::Path(steps)) = &self.loads {
+                let states = |step: &AskedStep| step.states.unwrap_or(1) as usize;
+                let end = steps.iter().map(states).fold(0, usize::saturating_add).saturating_sub(1);
+                let last = steps.last().map_or(1, states);
+                requested.drawn_states = Some(vec![end.saturating_sub(last / 2), end]);
+            }
+        }
     }
 
     /// As the text of a scene, which is read as the same question.

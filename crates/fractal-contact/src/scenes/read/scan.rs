@@ -53,7 +53,11 @@ pub(crate) fn read_map(
         diagnostic.with_help("`format`, `unit`, `size`, `cell`, `crop`, `fill`, `undefined`, `missing` in [scene.surface] say how to read it")
     };
     let note = |message: String, at: &str| Diagnostic::note(message).at(places.value(at));
-    let scan = Scan::read(&path, declared).map_err(wrong)?;
+    let scan = match &asked.content {
+        Some(bytes) => Scan::from_bytes(&path, bytes, declared),
+        None => Scan::read(&path, declared),
+    };
+    let scan = scan.map_err(wrong)?;
     let metadata = scan.metadata();
     let mut notes: Vec<Diagnostic> = metadata.notes.iter().map(|text| note(text.clone(), &file)).collect();
     let metric = metadata.unit.as_ref().is_some_and(|u| u.value.dimension() == Dimension::LENGTH);

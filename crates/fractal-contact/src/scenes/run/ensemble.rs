@@ -13,7 +13,7 @@ use std::sync::Arc;
 pub fn jobs_of_scenes(scenes: &[SceneFile], out: &Path) -> Vec<SceneJob> {
     let of = |(number, scene): (usize, &SceneFile)| {
         let among = move |job: SceneJob| SceneJob { among: Some(number), ..job };
-        scene_jobs(scene, out).into_iter().map(among).collect::<Vec<_>>()
+        scene_jobs(scene, &out.into()).into_iter().map(among).collect::<Vec<_>>()
     };
     scenes.iter().enumerate().flat_map(of).collect()
 }

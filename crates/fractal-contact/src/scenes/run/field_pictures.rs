@@ -2,13 +2,12 @@
 //! surface have one scale.
 
 use crate::scenes::read::{FieldFormat, HEIGHTS, Result, SceneFile, words};
-use crate::scenes::run::{FieldFile, FieldView, ModelResult, StateRecord, StoredFile};
+use crate::scenes::run::{FieldFile, FieldView, Folder, ModelResult, StateRecord, StoredFile};
 
 use contact_model::{Cells, FieldQuantity};
 use plots::{Chart, Curve, FieldPicture};
 use std::borrow::Cow;
-use std::io::Write as _;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The folder in which values are kept until they are drawn, beside the stored results.
 const WAITING: &str = ".units/";
@@ -18,11 +17,9 @@ const VIEW: &str = "view";
 /// The field that says where there is contact.
 const PRESSURE: &str = "pressure";
 
-impl StoredFile {
-    /// Whether it is a file for the program's own use only.
-    pub fn is_hidden(&self) -> bool {
-        self.name.starts_with(WAITING)
-    }
+/// Whether a file of this name is for the program's own use only.
+pub(crate) fn is_hidden(name: &str) -> bool {
+    name.starts_with(WAITING)
 }
 
 /// Whether a field of this name is drawn, or needed for drawing another one: contacts are outlined.
@@ -42,37 +39,30 @@ pub(crate) fn magnitude<'a>(components: &[Cow<'a, [f64]>]) -> Cow<'a, [f64]> {
 }
 
 /// Keeps the values of a field, little-endian, row-major, one component after the other, until it is drawn.
-pub(crate) fn keep(out: &Path, file: FieldFile<'_>, values: &[f64]) -> Result<StoredFile> {
+pub(crate) fn keep(folder: &Folder, file: FieldFile<'_>, values: &[f64]) -> Result<StoredFile> {
     let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
-    keep_bytes(out, FieldFile { extension: EXTENSION, ..file }, &bytes)
+    folder.keep(waiting(FieldFile { extension: EXTENSION, ..file }), &bytes)
 }
 
 /// Keeps the values of a field that the report shows.
-pub(crate) fn keep_view(out: &Path, file: FieldFile<'_>, view: &FieldView) -> Result<StoredFile> {
-    keep_bytes(out, FieldFile { extension: VIEW, ..file }, &view.encode())
+pub(crate) fn keep_view(folder: &Folder, file: FieldFile<'_>, view: &FieldView) -> Result<StoredFile> {
+    folder.keep(waiting(FieldFile { extension: VIEW, ..file }), &view.encode())
 }
 
 /// The values of a state that [`keep_view`] kept.
-pub(crate) fn view(out: &Path, file: FieldFile<'_>) -> Option<FieldView> {
-    let name = format!("{WAITING}{}", FieldFile { extension: VIEW, ..file });
-    FieldView::decode(&runs::files::read(&out.join(name), u64::MAX).ok()?)
+pub(crate) fn view(folder: &Folder, file: FieldFile<'_>) -> Option<FieldView> {
+    FieldView::decode(&folder.read(&waiting(FieldFile { extension: VIEW, ..file }))?)
 }
 
-fn keep_bytes(out: &Path, file: FieldFile<'_>, bytes: &[u8]) -> Result<StoredFile> {
-    let name = format!("{WAITING}{file}");
-    let path = out.join(&name);
-    // A new file, not what a link of this name leads to.
-    let _ = std::fs::remove_file(&path);
-    let file = std::fs::File::options().write(true).create_new(true).open(&path);
-    let written = file.and_then(|mut file| file.write_all(bytes));
-    written.map_err(runs::Error::file("write", &path))?;
-    StoredFile::of(out, name)
+/// The name of a file that waits to be drawn or shown.
+fn waiting(file: FieldFile<'_>) -> String {
+    format!("{WAITING}{file}")
 }
 
 /// Draws the fields of all states, each quantity in one range. Once a result is complete it does not name the
-/// values kept for drawing any more; their files are returned, to be removed when the result is stored. `drew` is
-/// called after each picture.
-pub(crate) fn draw(of: FieldPictures<'_>, result: &mut ModelResult, drew: &dyn Fn()) -> Result<Vec<PathBuf>> {
+/// values kept for drawing any more; the names of their files are returned, to be removed when the result is stored.
+/// `drew` is called after each picture.
+pub(crate) fn draw(of: FieldPictures<'_>, result: &mut ModelResult, drew: &dyn Fn()) -> Result<Vec<String>> {
     let drawn = of.scene.requested.fields().filter(|(_, formats)| formats.contains(&FieldFormat::Png));
     for (field, _) in drawn {
         let states: Vec<usize> = result.states.iter().map(|state| state.index).collect();
@@ -86,9 +76,8 @@ pub(crate) fn draw(of: FieldPictures<'_>, result: &mut ModelResult, drew: &dyn F
         for state in &mut result.states {
             if let Some(components) = read(&state.index) {
                 for (name, bytes) in of.pictures(&of_all_states, state, &components)? {
-                    runs::files::write_whole(&of.out.join(&name), &bytes)?;
                     state.files.retain(|file| file.name != name);
-                    state.files.push(StoredFile::of(of.out, name)?);
+                    state.files.push(of.folder.write(name, &bytes)?);
                 }
                 drew();
             }
@@ -97,7 +86,7 @@ pub(crate) fn draw(of: FieldPictures<'_>, result: &mut ModelResult, drew: &dyn F
     let mut drawn = Vec::new();
     for state in result.states.iter_mut().filter(|_| result.complete) {
         let waiting = state.files.extract_if(.., |file| file.name.ends_with(EXTENSION));
-        drawn.extend(waiting.map(|file| of.out.join(file.name)));
+        drawn.extend(waiting.map(|file| file.name));
     }
     Ok(drawn)
 }
@@ -109,7 +98,7 @@ pub(crate) struct FieldPictures<'a> {
     pub model: &'a str,
     pub surface: usize,
     pub cells: Cells,
-    pub out: &'a Path,
+    pub folder: &'a Folder,
 }
 
 /// What all pictures of a field have in common.
@@ -126,8 +115,7 @@ impl FieldPictures<'_> {
 
     /// The components of a field that [`keep`] kept.
     fn read(&self, field: &str, state: usize, components: usize) -> Option<Vec<Cow<'static, [f64]>>> {
-        let name = format!("{WAITING}{}", self.file(field, state, EXTENSION));
-        let bytes = runs::files::read(&self.out.join(name), u64::MAX).ok()?;
+        let bytes = self.folder.read(&waiting(self.file(field, state, EXTENSION)))?;
         let (values, rest) = bytes.as_chunks();
         let count = self.cells.checked_count().filter(|count| *count > 0)?;
         let whole = rest.is_empty() && Some(values.len()) == count.checked_mul(components);
@@ -164,7 +152,7 @@ impl FieldPictures<'_> {
             drawn.subtitle +=
                 if scene.is_history() { "; one scale for all steps" } else { "; one scale for all loads" };
         }
-        let path = self.out.join(&name);
+        let path = self.folder.path(&name);
         let bytes = drawn.png(&path.display().to_string())?;
         Ok(vec![(name, bytes)])
     }
@@ -173,17 +161,17 @@ impl FieldPictures<'_> {
 /// The states of a stored result whose files are all there and unchanged. A picture of an interrupted run does
 /// not count among them: it is drawn again from the values kept for it, and a later run that was killed may
 /// have drawn some of the pictures anew, in another range.
-pub(crate) fn keep_whole_states(result: &mut ModelResult, out: &Path) {
+pub(crate) fn keep_whole_states(result: &mut ModelResult, folder: &Folder) {
     if !result.complete {
         for state in &mut result.states {
             let waiting: Vec<String> = (state.files.iter())
                 .filter_map(|file| file.name.strip_prefix(WAITING)?.strip_suffix(EXTENSION))
                 .flat_map(|stem| [format!("{stem}png"), format!("{stem}svg")])
                 .collect();
-            state.files.retain(|file| !waiting.contains(&file.name) || file.is_whole(out));
+            state.files.retain(|file| !waiting.contains(&file.name) || folder.holds(file));
         }
     }
-    result.states.retain(|state| state.is_whole(out));
+    result.states.retain(|state| state.is_whole(folder));
 }
 
 /// Removes the values that a killed run kept for drawing.

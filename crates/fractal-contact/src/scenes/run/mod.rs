@@ -3,6 +3,7 @@
 pub(crate) mod ensemble;
 pub(crate) mod field_pictures;
 pub(crate) mod field_view;
+pub(crate) mod folder;
 pub(crate) mod outcome;
 pub(crate) mod path_keeper;
 pub(crate) mod pilot;
@@ -12,7 +13,9 @@ pub(crate) mod solve;
 pub(crate) mod state_result;
 pub(crate) mod warnings;
 
+pub(crate) use field_pictures::is_hidden;
 pub(crate) use field_view::FieldView;
+pub(crate) use folder::Folder;
 pub(crate) use outcome::{Options, SceneOutcome};
 pub(crate) use path_keeper::{KeepResult, Keeper};
 pub(crate) use pilot::{SharedStop, remove_trials, take_trial};

@@ -5,7 +5,8 @@ use crate::scenes::read::Result;
 use crate::scenes::run::ModelResult;
 use contact_model::{PathMemory, PreparedContact};
 use runs::{Checkpoint, Progress, StatesInHand};
-use std::time::{Duration, Instant};
+use std::time::Duration;
+use web_time::Instant;
 
 /// Shortest time between two writes of the results: a kill loses the states since the last one, and the state
 /// that is being solved.
@@ -20,7 +21,8 @@ pub(crate) type KeepResult<'a> = dyn Fn(&ModelResult) -> runs::Result<()> + 'a;
 pub(crate) struct Keeper<'a> {
     /// Keeps a result in the store; `None` where it is not worth storing.
     pub store: Option<&'a KeepResult<'a>>,
-    pub checkpoint: Checkpoint,
+    /// `None` in memory, where nothing outlives the run.
+    pub checkpoint: Option<Checkpoint>,
     pub progress: &'a dyn Progress,
     /// Name of the model and its surface in notes.
     pub name: String,
@@ -37,7 +39,7 @@ pub(crate) struct Keeper<'a> {
 impl<'a> Keeper<'a> {
     pub fn new(
         store: Option<&'a KeepResult<'a>>,
-        checkpoint: Checkpoint,
+        checkpoint: Option<Checkpoint>,
         progress: &'a dyn Progress,
         name: String,
         told_states: &'a StatesInHand<'a>,
@@ -78,16 +80,17 @@ impl<'a> Keeper<'a> {
         result: &ModelResult,
         contact: &mut dyn PreparedContact,
     ) -> std::result::Result<usize, runs::Unused> {
-        let Some((done, memory)) = self.checkpoint.read()? else { return Ok(0) };
+        let Some(checkpoint) = &self.checkpoint else { return Ok(0) };
+        let Some((done, memory)) = checkpoint.read()? else { return Ok(0) };
         let done = usize::try_from(done).unwrap_or(usize::MAX);
         let states = result.states.get(..done).unwrap_or_default();
         if states.is_empty() || states.iter().enumerate().any(|(i, state)| state.index != i) {
             let reason = "states before it, or their files, are missing or were changed";
-            return Err(self.checkpoint.unused(reason));
+            return Err(checkpoint.unused(reason));
         }
         match contact.recall(&PathMemory::from_bytes(memory)) {
             Ok(()) => Ok(done),
-            Err(error) => Err(self.checkpoint.unused(&error.to_string())),
+            Err(error) => Err(checkpoint.unused(&error.to_string())),
         }
     }
 
@@ -96,19 +99,20 @@ impl<'a> Keeper<'a> {
     pub fn keep(&mut self, result: &mut ModelResult, contact: &dyn PreparedContact, interrupted: bool) {
         self.told_states.solved(result.states.len());
         let done = result.states.len();
-        let long = KEEP_EVERY.max(SHARE * self.took);
+        // In memory, the receiver shows each state.
+        let long = self.checkpoint.as_ref().map_or(Duration::ZERO, |_| KEEP_EVERY.max(SHARE * self.took));
         if done == self.kept || !interrupted && self.last.elapsed() < long {
             return;
         }
         let Some(store) = self.store else { return };
         let start = Instant::now();
-        let kept = match contact.memory() {
-            Ok(None) => store(result),
+        let kept = match self.checkpoint.as_ref().map(|checkpoint| (checkpoint, contact.memory())) {
+            None | Some((_, Ok(None))) => store(result),
             // The states first: a checkpoint is of no use without those before it.
-            Ok(Some(memory)) => {
-                store(result).and_then(|()| self.checkpoint.write(done as u64, memory.bytes()))
+            Some((checkpoint, Ok(Some(memory)))) => {
+                store(result).and_then(|()| checkpoint.write(done as u64, memory.bytes()))
             }
-            Err(error) => Err(runs::Error::model("memory of the loads")(error)),
+            Some((_, Err(error))) => Err(runs::Error::model("memory of the loads")(error)),
         };
         match kept {
             Ok(()) => self.kept = done,
@@ -135,7 +139,9 @@ impl<'a> Keeper<'a> {
         if self.kept > 0 || files {
             store(result)?;
         }
-        self.checkpoint.remove();
+        if let Some(checkpoint) = &self.checkpoint {
+            checkpoint.remove();
+        }
         Ok(())
     }
 

@@ -8,8 +8,8 @@
 
 use crate::scenes::plan::{Candidate, ErrorsOfStates, ModelOnSurface, check, choose};
 use crate::scenes::read::{Numerics, Result, SceneFile, cells};
-use crate::scenes::run::{ModelResult, Options, SceneJob, scene_jobs};
-use contact_model::Cells;
+use crate::scenes::run::{Folder, ModelResult, Options, SceneJob, scene_jobs};
+use contact_model::{Cells, Stop};
 use runs::amounts::memory;
 use runs::{Error, Job as _, JobRun, Progress, Store, Threads, run_stored};
 use std::path::{Path, PathBuf};
@@ -68,6 +68,24 @@ impl SceneFile {
             check_memory(&chosen)?;
         }
         Ok(chosen.scene)
+    }
+
+    /// The same in memory: the states of the pilot are not kept.
+    ///
+    /// # Errors
+    /// As [`SceneFile::with_grid_for_accuracy`].
+    pub fn with_grid_in_memory(self, progress: &dyn Progress, stop: Stop<'_>) -> Result<Self> {
+        let Some(requested) = self.accuracy else { return Ok(self) };
+        check(&self)?;
+        let mut errors = |candidate: &Candidate| {
+            let job = PilotJob { candidate, out: Path::new("") }.job_in(Folder::in_memory());
+            let result = job.go_on(ModelResult::default(), None, progress, stop)?;
+            if result.states.len() < candidate.scene.request.count() {
+                return Err(stopped());
+            }
+            Ok(errors_of(&result))
+        };
+        Ok(choose(&self, requested, &mut errors)?.scene)
     }
 
     /// The scene with the grid that [`SceneFile::with_grid_for_accuracy`] has chosen for it in a folder of
@@ -131,7 +149,7 @@ fn is_solved(chosen: &Candidate, out: &Path) -> Result<bool> {
         let mut results = store.texts(&job.stored_key()).filter_map(|text| SceneJob::KIND.decode(&text));
         results.any(|result: ModelResult| result.complete)
     };
-    let jobs = scene_jobs(&chosen.scene, out);
+    let jobs = scene_jobs(&chosen.scene, &out.into());
     Ok(jobs.iter().filter(|job| job.unit.model == chosen.model).all(solved))
 }
 
@@ -149,9 +167,13 @@ struct PilotJob<'a> {
 
 impl PilotJob<'_> {
     fn job(&self, folder: &Path) -> SceneJob {
+        self.job_in(folder.into())
+    }
+
+    fn job_in(&self, folder: Folder) -> SceneJob {
         let unit = ModelOnSurface { model: self.candidate.model, surface: 0 };
         let scene = Arc::new(self.candidate.scene.clone());
-        SceneJob { draws: false, ..SceneJob::new(scene, unit, folder.into()) }
+        SceneJob { draws: false, ..SceneJob::new(scene, unit, folder) }
     }
 
     /// Its states, where all of them are stored. Their fields may be anywhere.
@@ -200,15 +222,16 @@ pub(crate) fn take_trial(scene: &SceneFile, out: &Path, store: &Store) {
     let Some(model) = scene.models.iter().position(bem3d).filter(|_| scene.accuracy.is_some()) else {
         return;
     };
-    let folder = trial_folder(out, cells(scene, &scene.models[model]));
+    let trial = trial_folder(out, cells(scene, &scene.models[model]));
+    let [from, to] = [&*trial, out].map(Folder::from);
     let unit = ModelOnSurface { model, surface: 0 };
     let scene = Arc::new(scene.clone());
-    let job = SceneJob::new(scene, unit, out.into());
+    let job = SceneJob::new(scene, unit, to.clone());
     let results = store.texts(&job.stored_key()).filter_map(|text| SceneJob::KIND.decode(&text));
     for file in results.flat_map(|result: ModelResult| result.states).flat_map(|state| state.files) {
         // A file that cannot be moved is missing in the run, which then solves its state.
-        if file.is_whole(&folder) && !file.is_whole(out) {
-            let _ = std::fs::rename(folder.join(&file.name), out.join(&file.name));
+        if from.holds(&file) && !to.holds(&file) {
+            let _ = std::fs::rename(from.path(&file.name), to.path(&file.name));
         }
     }
 }

@@ -3,12 +3,12 @@
 use crate::scenes::plan::{FORMAT, ModelOnSurface, calibration};
 use crate::scenes::read::{Error, Result, SceneFile, cells};
 use crate::scenes::run::solve::SceneInFolder;
-use crate::scenes::run::{KeepResult, Keeper, ModelResult, SharedLines, field_pictures};
+use crate::scenes::run::{Folder, KeepResult, Keeper, ModelResult, SharedLines, field_pictures};
 use contact_model::Stop;
 use runs::{Checkpoint, Job, JobList, Progress, ResultKind, Silent, StatesInHand, Store, fnv1a_128};
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Instant;
+use web_time::Instant;
 
 /// A model of a scene on one of its surfaces under all loads, or along the whole path. It is solved, stored and
 /// given to a shard as a whole.
@@ -20,8 +20,8 @@ pub struct SceneJob {
     pub(crate) lines: Arc<SharedLines>,
     /// Number of its scene, where several scenes share the directory.
     pub(crate) among: Option<usize>,
-    /// Directory of the results.
-    pub(crate) out: Arc<Path>,
+    /// Folder of the results.
+    pub(crate) folder: Folder,
     /// Whether it draws pictures of its fields at the end; a job that does not is complete when it is done
     /// again by one that does.
     pub(crate) draws: bool,
@@ -74,20 +74,20 @@ impl Job for SceneJob {
         stop: Stop<'_>,
     ) -> Result<ModelResult> {
         let mut begun = stored.unwrap_or_default();
-        field_pictures::keep_whole_states(&mut begun, &self.out);
+        field_pictures::keep_whole_states(&mut begun, &self.folder);
         self.go_on(begun, self.is_stored().then_some(store), progress, stop)
     }
 
     /// A result counts as absent where a state or a file is missing or changed.
     fn is_whole(&self, result: &ModelResult) -> bool {
-        result.complete && result.states.iter().all(|state| state.is_whole(&self.out))
+        result.complete && result.states.iter().all(|state| state.is_whole(&self.folder))
     }
 }
 
 impl SceneJob {
     /// A job that draws its pictures and shares no lines with others.
-    pub(crate) fn new(scene: Arc<SceneFile>, unit: ModelOnSurface, out: Arc<Path>) -> Self {
-        Self { unit, scene, lines: Arc::default(), among: None, out, draws: true }
+    pub(crate) fn new(scene: Arc<SceneFile>, unit: ModelOnSurface, folder: Folder) -> Self {
+        Self { unit, scene, lines: Arc::default(), among: None, folder, draws: true }
     }
 
     /// The relative cost of drawing its pictures.
@@ -96,7 +96,7 @@ impl SceneJob {
     }
 
     /// Solves the states that `begun` lacks.
-    fn go_on(
+    pub(crate) fn go_on(
         &self,
         mut begun: ModelResult,
         store: Option<&KeepResult<'_>>,
@@ -111,20 +111,21 @@ impl SceneJob {
             Some(_) => format!("{:08x}-", fnv1a_128(key.as_bytes()) >> 96),
             None => String::new(),
         };
-        let checkpoint = Checkpoint::new(&self.out, &format!("{scene}{model}-{surface}"), &key);
+        let checkpoint = |directory| Checkpoint::new(directory, &format!("{scene}{model}-{surface}"), &key);
+        let checkpoint = self.folder.directory().map(checkpoint);
         let states = [begun.kept, self.scene.request.count()];
         let pictures = if self.draws { self.unit.pictures(&self.scene) } else { 0 };
         let told = StatesInHand::new((self.name(), self.cost()), states, progress, stop)
             .with_pictures(pictures, self.cost_of_pictures());
         let mut keeper = Keeper::new(store, checkpoint, progress, self.name(), &told);
-        let of = SceneInFolder { scene: &self.scene, lines: &self.lines, out: &self.out };
+        let of = SceneInFolder { scene: &self.scene, lines: &self.lines, folder: &self.folder };
         let mut result = self.unit.solve(of, begun, &mut keeper, &told)?;
         let (is_solved, mut drawn) = (result.complete, Vec::new());
         if self.draws {
             let start = Instant::now();
-            let (scene, out) = (&*self.scene, &*self.out);
+            let (scene, folder) = (&*self.scene, &self.folder);
             let cells = cells(scene, self.unit.numerics(scene));
-            let pictures = field_pictures::FieldPictures { scene, model, surface, cells, out };
+            let pictures = field_pictures::FieldPictures { scene, model, surface, cells, folder };
             drawn = field_pictures::draw(pictures, &mut result, &|| told.drew())?;
             result.seconds += start.elapsed().as_secs_f64();
         } else {
@@ -135,8 +136,7 @@ impl SceneJob {
         }
         keeper.finish(&result, !drawn.is_empty())?;
         for file in drawn {
-            // It may already have been removed; it is not needed any more.
-            let _ = std::fs::remove_file(file);
+            self.folder.remove(&file);
         }
         Ok(result)
     }
@@ -147,7 +147,7 @@ impl SceneJob {
         let key = self.stored_key();
         let stored = || store.texts(&key).filter_map(|text| Self::KIND.decode(&text));
         let mut found = stored().find(|result| self.is_whole(result)).or_else(|| stored().next())?;
-        field_pictures::keep_whole_states(&mut found, &self.out);
+        field_pictures::keep_whole_states(&mut found, &self.folder);
         found.complete &= found.states.len() == self.scene.request.count();
         found.kept = found.states.len();
         Some(found)
@@ -163,20 +163,20 @@ pub(crate) fn units(scene: &SceneFile) -> Vec<ModelOnSurface> {
         .collect()
 }
 
-/// The same, as jobs that write their fields into `out`.
-pub(crate) fn scene_jobs(scene: &SceneFile, out: &Path) -> Vec<SceneJob> {
-    let (scene, out) = (Arc::new(scene.clone()), Arc::<Path>::from(out));
+/// The same, as jobs that write their fields into a folder.
+pub(crate) fn scene_jobs(scene: &SceneFile, folder: &Folder) -> Vec<SceneJob> {
+    let scene = Arc::new(scene.clone());
     let lines = Arc::default();
     let of = |unit| SceneJob {
         lines: Arc::clone(&lines),
-        ..SceneJob::new(Arc::clone(&scene), unit, Arc::clone(&out))
+        ..SceneJob::new(Arc::clone(&scene), unit, folder.clone())
     };
     units(&scene).into_iter().map(of).collect()
 }
 
 /// The jobs of a scene whose results go to `out`: each model on each surface.
 pub fn jobs(scene: &SceneFile, out: &Path) -> Box<dyn JobList> {
-    Box::new(scene_jobs(scene, out))
+    Box::new(scene_jobs(scene, &out.into()))
 }
 
 #[cfg(test)]

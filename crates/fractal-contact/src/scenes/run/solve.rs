@@ -6,7 +6,7 @@ use crate::scenes::read::{
     distributed, step_to, words,
 };
 use crate::scenes::run::{
-    Answer, AnsweredState, FieldFile, FieldView, Keeper, ModelResult, SharedLines, StateRecord, StoredFile,
+    Answer, AnsweredState, FieldFile, FieldView, Folder, Keeper, ModelResult, SharedLines, StateRecord,
     Warning, field_pictures,
 };
 use contact_model::{
@@ -15,7 +15,7 @@ use contact_model::{
 };
 use std::borrow::Cow;
 use std::path::Path;
-use std::time::Instant;
+use web_time::Instant;
 
 /// Bytes of a solve below which the memory is not looked at.
 const SMALL: f64 = 1e7;
@@ -35,7 +35,7 @@ impl ModelOnSurface {
         keeper: &mut Keeper<'_>,
         stop: Stop<'_>,
     ) -> Result<ModelResult> {
-        let SceneInFolder { scene, lines, out } = of;
+        let SceneInFolder { scene, lines, folder } = of;
         if let LoadRequest::Loads(loads) = &scene.request
             && result.states.len() == loads.values.len()
         {
@@ -63,7 +63,7 @@ impl ModelOnSurface {
             unit: self,
             scene,
             contact: contact.as_mut(),
-            out,
+            folder,
             stop,
             result,
             keeper,
@@ -85,7 +85,7 @@ impl ModelOnSurface {
         &self,
         scene: &SceneFile,
         mut solved: AnsweredState,
-        out: &Path,
+        folder: &Folder,
         index: usize,
     ) -> Result<StateRecord> {
         let fields = solved.state.fields.take().unwrap_or_default();
@@ -112,19 +112,19 @@ impl ModelOnSurface {
             let file = |extension| FieldFile { field: name, model, surface, state, extension };
             let drawn = scene.requested.draws(name, kept.index);
             if drawn && field_pictures::is_needed(scene, name) {
-                kept.files.push(field_pictures::keep(out, file(""), &all)?);
+                kept.files.push(field_pictures::keep(folder, file(""), &all)?);
             }
             // Only the first surface is shown, and only fields that are written to files.
             if drawn && surface == 0 && !formats.is_empty() {
                 let view = FieldView::new(field.cells(), &shown);
-                kept.files.push(field_pictures::keep_view(out, file(""), &view)?);
+                kept.files.push(field_pictures::keep_view(folder, file(""), &view)?);
             }
             for &format in formats {
                 let name = file(format.extension()).to_string();
                 let values =
                     WrittenField { quantity, field, components: &components, all: &all, shown: &shown };
-                if values.write(format, drawn, &out.join(&name), scene)? {
-                    kept.files.push(StoredFile::of(out, name)?);
+                if let Some(bytes) = values.bytes(format, drawn, &folder.path(&name), scene)? {
+                    kept.files.push(folder.write(name, &bytes)?);
                 }
             }
         }
@@ -148,12 +148,12 @@ impl ModelOnSurface {
     }
 }
 
-/// A scene, the lines that its models share, and the directory of its fields.
+/// A scene, the lines that its models share, and the folder of its fields.
 #[derive(Clone, Copy)]
 pub(crate) struct SceneInFolder<'a> {
     pub scene: &'a SceneFile,
     pub lines: &'a SharedLines,
-    pub out: &'a Path,
+    pub folder: &'a Folder,
 }
 
 /// A model on a surface whose states are being solved.
@@ -161,8 +161,8 @@ struct ContactInHand<'a, 'k> {
     unit: &'a ModelOnSurface,
     scene: &'a SceneFile,
     contact: &'a mut dyn PreparedContact,
-    /// The directory of the fields.
-    out: &'a Path,
+    /// The folder of the fields.
+    folder: &'a Folder,
     stop: Stop<'a>,
     result: ModelResult,
     keeper: &'a mut Keeper<'k>,
@@ -210,7 +210,7 @@ impl ContactInHand<'_, '_> {
                     let grid = comparison.as_ref().map(errors);
                     let warnings = Warning::of(self.scene, &state, grid.as_ref());
                     let solved = AnsweredState { state, normalisation, warnings, grid };
-                    self.unit.recorded(self.scene, solved, self.out, index)?
+                    self.unit.recorded(self.scene, solved, self.folder, index)?
                 }
                 // A load by itself has no stable state before it.
                 Err(contact_model::Error::NotConverged { best })
@@ -310,7 +310,7 @@ impl ContactInHand<'_, '_> {
                 Ok(Some((state, true))) => {
                     let warnings = Warning::of(self.scene, &state, None);
                     let solved = AnsweredState { state, normalisation, warnings, grid: None };
-                    self.unit.recorded(self.scene, solved, self.out, index)?
+                    self.unit.recorded(self.scene, solved, self.folder, index)?
                 }
                 Ok(Some((best, false))) => missed(index, best, normalisation),
                 Err(error) => StateRecord::new(
@@ -361,37 +361,40 @@ struct WrittenField<'a> {
 }
 
 impl WrittenField<'_> {
-    /// Writes a format of it, and returns whether there is such a file. Pictures with axes are drawn later, when
-    /// all states have been solved.
-    fn write(&self, format: FieldFormat, drawn: bool, path: &Path, scene: &SceneFile) -> Result<bool> {
+    /// A format of it as the bytes of a file, which messages call `path`; `None` where there is no such file.
+    /// Pictures with axes are drawn later, when all states have been solved.
+    fn bytes(
+        &self,
+        format: FieldFormat,
+        drawn: bool,
+        path: &Path,
+        scene: &SceneFile,
+    ) -> Result<Option<Vec<u8>>> {
         let Self { quantity, field, components, all, shown } = *self;
-        match format {
+        Ok(match format {
             FieldFormat::Npy => {
                 let shape = [components.len(), field.rows(), field.columns()];
-                let bytes = surface_io::npy(&shape[usize::from(components.len() == 1)..], all)
-                    .map_err(|e| runs::Error::content(path, e.to_string()))?;
-                runs::files::write_whole(path, &bytes)?;
+                let bytes = surface_io::npy(&shape[usize::from(components.len() == 1)..], all);
+                Some(bytes.map_err(|e| runs::Error::content(path, e.to_string()))?)
             }
-            FieldFormat::Png => return Ok(false),
-            FieldFormat::Pixels if !drawn => return Ok(false),
+            FieldFormat::Png => None,
+            FieldFormat::Pixels if !drawn => None,
             FieldFormat::Pixels => {
                 let name = path.display().to_string();
-                let png = plots::grey_png(&name, field.cells(), field.size(), shown)?;
-                runs::files::write_whole(path, &png)?;
+                Some(plots::grey_png(&name, field.cells(), field.size(), shown)?)
             }
-            FieldFormat::Vti => write_vti(path, quantity, scene, field.cells(), components)?,
-        }
-        Ok(true)
+            FieldFormat::Vti => Some(vti(path, quantity, scene, field.cells(), components)?),
+        })
     }
 }
 
-fn write_vti(
+fn vti(
     path: &Path,
     quantity: &FieldQuantity,
     scene: &SceneFile,
     grid: Cells,
     components: &[Cow<'_, [f64]>],
-) -> Result<()> {
+) -> Result<Vec<u8>> {
     let unit = scene.system.shown(quantity.unit);
     // Two components are two arrays.
     let names: Vec<String> = match components.len() {
@@ -405,7 +408,7 @@ fn write_vti(
         .collect();
     let bytes = surface_io::vti(grid, scene.surface.size(), &arrays, surface_io::Encoding::Base64)
         .map_err(|e| Error::Argument { name: "vti", reason: format!("{}: {e}", path.display()) })?;
-    Ok(runs::files::write_whole(path, &bytes)?)
+    Ok(bytes)
 }
 
 #[cfg(test)]
@@ -415,8 +418,8 @@ mod tests {
     use contact_model::{Fields, HeightMap, Output, SolveReport, Step};
     use std::sync::Arc;
 
-    fn field_pictures_in<'a>(scene: &'a SceneFile, out: &'a Path) -> field_pictures::FieldPictures<'a> {
-        field_pictures::FieldPictures { scene, model: "bem3d", surface: 0, cells: [3, 2].into(), out }
+    fn field_pictures_in<'a>(scene: &'a SceneFile, folder: &'a Folder) -> field_pictures::FieldPictures<'a> {
+        field_pictures::FieldPictures { scene, model: "bem3d", surface: 0, cells: [3, 2].into(), folder }
     }
 
     /// Fields of 2 rows x 3 columns with oblong cells; the second point of the second row is undefined.
@@ -436,23 +439,27 @@ mod tests {
         (fields.pressure, fields.gap) = (field(&pressure), field(&gap));
         let state = ContactState::new(1.0, SolveReport::exact("test")).with_fields(fields);
         let dir = tempfile::tempdir().unwrap();
+        let folder = Folder::from(dir.path());
         let unit = ModelOnSurface { model: 0, surface: 0 };
         std::fs::create_dir(dir.path().join(".units")).unwrap();
         let normalisation = contact_model::Normalisation { contact_modulus: 1.0, length: 1.0, height: None };
         let solved = AnsweredState { state, normalisation, warnings: Vec::new(), grid: None };
-        let kept = unit.recorded(&scene, solved, dir.path(), 0).unwrap();
+        let kept = unit.recorded(&scene, solved, &folder, 0).unwrap();
         // Three files of each field, its values for the picture, and what the report shows of it.
         assert_eq!((kept.files.len(), kept.solved().unwrap().state.fields.is_none()), (10, true));
         let mut result = ModelResult { states: vec![kept], complete: true, ..ModelResult::default() };
-        let pictures = field_pictures_in(&scene, dir.path());
+        let pictures = field_pictures_in(&scene, &folder);
         let drawn = field_pictures::draw(pictures, &mut result, &|| ());
         let drawn = drawn.unwrap();
         let files = &result.states[0].files;
-        assert_eq!((files.len(), files.iter().filter(|file| file.is_hidden()).count()), (10, 2));
-        assert!(files.iter().all(|file| file.is_whole(dir.path())), "{files:?}");
+        assert_eq!(
+            (files.len(), files.iter().filter(|file| field_pictures::is_hidden(&file.name)).count()),
+            (10, 2)
+        );
+        assert!(files.iter().all(|file| folder.holds(file)), "{files:?}");
         // What the report shows, and the values that were drawn.
         assert_eq!(std::fs::read_dir(dir.path().join(".units")).unwrap().count(), 4);
-        assert!(drawn.len() == 2 && drawn.iter().all(|file| file.exists()), "{drawn:?}");
+        assert!(drawn.len() == 2 && drawn.iter().all(|file| dir.path().join(file).exists()), "{drawn:?}");
         let scan = |name: &str| {
             surface_io::Scan::read(dir.path().join(name), &surface_io::ReadOptions::default()).unwrap()
         };
@@ -490,15 +497,16 @@ mod tests {
         fields.stick_slip = Some(field([0.0, 2.0, 0.0, 1.0, 0.0, 1.0]));
         let state = ContactState::new(1.0, SolveReport::exact("test")).with_fields(fields);
         let dir = tempfile::tempdir().unwrap();
+        let folder = Folder::from(dir.path());
         std::fs::create_dir(dir.path().join(".units")).unwrap();
         let normalisation = contact_model::Normalisation { contact_modulus: 1.0, length: 1.0, height: None };
         let solved = AnsweredState { state, normalisation, warnings: Vec::new(), grid: None };
         let unit = ModelOnSurface { model: 0, surface: 0 };
-        let kept = unit.recorded(&scene, solved, dir.path(), 0).unwrap();
+        let kept = unit.recorded(&scene, solved, &folder, 0).unwrap();
         let mut result = ModelResult { states: vec![kept], complete: true, ..ModelResult::default() };
-        field_pictures::draw(field_pictures_in(&scene, dir.path()), &mut result, &|| ()).unwrap();
+        field_pictures::draw(field_pictures_in(&scene, &folder), &mut result, &|| ()).unwrap();
         let files = &result.states[0].files;
-        assert!(files.iter().all(|file| file.is_whole(dir.path())), "{files:?}");
+        assert!(files.iter().all(|file| folder.holds(file)), "{files:?}");
         for name in ["traction", "slip", "stick_slip"] {
             for format in &all {
                 let file = format!("{name}-bem3d-0-000.{}", format.extension());
@@ -513,7 +521,7 @@ mod tests {
         let vti = std::fs::read_to_string(dir.path().join("traction-bem3d-0-000.vti")).unwrap();
         assert!(vti.contains("Name=\"traction_x\"") && vti.contains("Name=\"traction_y\""), "{vti}");
         let file = |field| FieldFile { field, model: "bem3d", surface: 0, state: 0, extension: "" };
-        let view = field_pictures::view(dir.path(), file("traction")).unwrap();
+        let view = field_pictures::view(&folder, file("traction")).unwrap();
         assert_eq!(view.values, [0.0, 5.0, 0.0, 1.0, 0.0, 2.0]);
     }
 }

@@ -1,14 +1,13 @@
 //! The stored results of a model, and the names of their files.
 
 use crate::scenes::plan::GridErrors;
-use crate::scenes::read::{Bin, Distributed, HEIGHTS, Result, SceneFile, amount, words};
-use crate::scenes::run::Warning;
+use crate::scenes::read::{Bin, Distributed, HEIGHTS, SceneFile, amount, words};
+use crate::scenes::run::{Folder, Warning};
 use contact_model::quantities::StateQuantity;
 use contact_model::{ContactState, FIELDS, Normalisation, Status};
 use runs::fnv1a_128;
 use serde::{Deserialize, Serialize};
 use std::fmt;
-use std::path::Path;
 
 /// The states of one model on one surface, as the store holds them.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
@@ -138,8 +137,8 @@ impl StateRecord {
     }
 
     /// Whether all its files are unchanged.
-    pub fn is_whole(&self, out: &Path) -> bool {
-        self.files.iter().all(|file| file.is_whole(out))
+    pub fn is_whole(&self, folder: &Folder) -> bool {
+        self.files.iter().all(|file| folder.holds(file))
     }
 }
 
@@ -155,7 +154,7 @@ pub(crate) struct SolvedUnit<'a> {
 /// A file that belongs to a state.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(crate) struct StoredFile {
-    /// Relative to the directory of the results.
+    /// Relative to the folder of the results.
     pub name: String,
     pub bytes: u64,
     /// [`fnv1a_128`] of its bytes.
@@ -163,16 +162,9 @@ pub(crate) struct StoredFile {
 }
 
 impl StoredFile {
-    /// The record of a file as it is now.
-    pub fn of(out: &Path, name: String) -> Result<Self> {
-        let path = out.join(&name);
-        let content = runs::files::read(&path, u64::MAX)?;
-        Ok(Self { name, bytes: content.len() as u64, digest: fnv1a_128(&content) })
-    }
-
-    /// Whether the file is unchanged.
-    pub fn is_whole(&self, out: &Path) -> bool {
-        Self::of(out, self.name.clone()).is_ok_and(|found| found == *self)
+    /// The record of a file with these bytes.
+    pub fn of(name: String, content: &[u8]) -> Self {
+        Self { name, bytes: content.len() as u64, digest: fnv1a_128(content) }
     }
 }
 

@@ -1,6 +1,8 @@
 //! Descriptions of files: a scene, a surface or a table of results.
 
 use crate::scenes::plan::{Plan, of_slopes};
+use crate::scenes::read::asked_surface::AskedFile;
+use crate::scenes::read::missing_keys::{MissingKey, missing_keys};
 use crate::scenes::read::{
     Error, Remark, Result, SceneFile, System, description, exchanged_sides, number, remarks,
 };
@@ -123,16 +125,7 @@ pub fn info_statistics(
     }
     let scan = SurfaceFile::open(path, declared).and_then(SurfaceFile::scan)?;
     let found = scan.preprocessed(preprocessing)?;
-    let system = system(scan.metadata());
-    let filled = found.holes.as_ref().map(FilledPoints::new);
-    let measured = MeasuredMap {
-        map: &found.map,
-        filled: filled.as_ref(),
-        profile: scan.metadata().profile,
-        boundary: Boundary::Free,
-        instrument: found.reliable_from,
-    };
-    let statistics = MapStatisticsTables::new(measured, system);
+    let statistics = statistics_of(&scan, &found);
     let name = path.file_name().map_or_else(|| "surface".into(), |name| name.to_string_lossy().into_owned());
     let mut header = Header { command: format!("fractal-contact info {name}"), ..Header::default() };
     for step in &found.steps {
@@ -154,11 +147,71 @@ pub fn info_statistics(
         map: &found.map,
         statistics: &statistics,
     };
-    write("report.html", report.html()?.into_bytes())?;
+    write("report.html", report.page()?.html().into_bytes())?;
     let names: Vec<String> = runs::file_names(&files);
     // Only one exponent is shown: that of the statistics, which has an interval.
-    let text = described(&scan, &found, &description(&found.map, system).without_fit());
+    let text = described(&scan, &found, &description(&found.map, system(scan.metadata())).without_fit());
     Ok(format!("{text}\n{}\n{}: {}\n", statistics.text(), out.display(), names.join(", ")))
+}
+
+/// Statistics of a map that is a piece of a larger surface.
+fn statistics_of(scan: &Scan, found: &Preprocessed) -> MapStatisticsTables {
+    let filled = found.holes.as_ref().map(FilledPoints::new);
+    let measured = MeasuredMap {
+        map: &found.map,
+        filled: filled.as_ref(),
+        profile: scan.metadata().profile,
+        boundary: Boundary::Free,
+        instrument: found.reliable_from,
+    };
+    MapStatisticsTables::new(measured, system(scan.metadata()))
+}
+
+/// What a file in memory holds, for a page on which it is dropped.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct DescribedFile {
+    /// All channels as JSON, as [`info_json`] has them.
+    pub channels: String,
+    /// The keys that the file needs besides those that are given, for the channel that was chosen.
+    pub missing: Vec<MissingKey>,
+    /// The map, its statistics and its spectrum as HTML, or the reason why the file gives no map as it is read now.
+    pub map: std::result::Result<String, String>,
+}
+
+/// Describes a file in memory. `given` returns the value of a key of `[scene.surface]`, and all that are given are
+/// in `asked` too.
+///
+/// # Errors
+/// [`Error::Surface`] for a file that has no channel which can be read.
+pub fn describe_file(
+    name: &str,
+    bytes: &[u8],
+    asked: &AskedFile,
+    given: &dyn Fn(&str) -> Option<String>,
+) -> Result<DescribedFile> {
+    let (declared, preprocessing) = (&asked.declared, asked.preprocessing());
+    let channels =
+        channels_json(&|declared| SurfaceFile::from_bytes(name, bytes, declared), declared, &preprocessing)?;
+    let scan = SurfaceFile::from_bytes(name, bytes, declared).and_then(SurfaceFile::scan);
+    let (missing, map) = match scan {
+        Ok(scan) => {
+            let map = match scan.preprocessed(&preprocessing) {
+                Ok(found) => Ok(page_of(name, &scan, &found)?),
+                Err(error) => Err(error.to_string()),
+            };
+            (missing_keys(scan.metadata(), given), map)
+        }
+        Err(error) => (Vec::new(), Err(error.to_string())),
+    };
+    Ok(DescribedFile { channels, missing, map })
+}
+
+/// The page of a surface without its frame.
+fn page_of(name: &str, scan: &Scan, found: &Preprocessed) -> Result<String> {
+    let statistics = &statistics_of(scan, found);
+    let (metadata, steps, map) = (scan.metadata(), &found.steps, &found.map);
+    Ok(SurfaceReport { name, metadata, steps, map, statistics }.page()?.content())
 }
 
 /// Whether lengths are in metres.
@@ -203,10 +256,17 @@ fn each(file: SurfaceFile<'_>) -> Result<String> {
 /// # Errors
 /// [`Error::Surface`] for errors of the file.
 pub fn info_json(path: &Path, declared: &ReadOptions, preprocessing: &Preprocessing) -> Result<String> {
-    let file = SurfaceFile::open(path, declared)?;
+    channels_json(&|declared| SurfaceFile::open(path, declared), declared, preprocessing)
+}
+
+/// Opens a file with these options.
+type Open<'a> = dyn Fn(&ReadOptions) -> surface_io::Result<SurfaceFile<'a>> + 'a;
+
+fn channels_json(open: &Open<'_>, declared: &ReadOptions, preprocessing: &Preprocessing) -> Result<String> {
+    let file = open(declared)?;
     let mut channels = Vec::with_capacity(file.len());
     for (number, scan) in file.scans().enumerate() {
-        let found = scan.and_then(|scan| channel(&scan, number, (path, declared), preprocessing));
+        let found = scan.and_then(|scan| channel(&scan, number, (open, declared), preprocessing));
         channels.push(match found {
             Ok(channel) => channel,
             Err(error) if error.problem().is_some() => serde_json::json!({ "error": error.to_string() }),
@@ -220,7 +280,7 @@ pub fn info_json(path: &Path, declared: &ReadOptions, preprocessing: &Preprocess
 fn channel(
     scan: &Scan,
     number: usize,
-    (path, declared): (&Path, &ReadOptions),
+    (open, declared): (&Open<'_>, &ReadOptions),
     preprocessing: &Preprocessing,
 ) -> surface_io::Result<serde_json::Value> {
     let metadata = scan.metadata();
@@ -240,7 +300,7 @@ fn channel(
         // Most steps need no lengths: cells of 1, whose size is not told.
         let dimension = metadata.unit.as_ref().map_or(Dimension::NONE, |unit| unit.value.dimension());
         let cell = Quantity::new(1.0, dimension).ok().map(Into::into);
-        let file = SurfaceFile::open(path, &ReadOptions { cell, ..declared.clone() })?;
+        let file = open(&ReadOptions { cell, ..declared.clone() })?;
         match file.scans().nth(number) {
             Some(scan) => scan?.preprocessed(&preprocessing)?,
             None => scan.preprocessed(&preprocessing)?,

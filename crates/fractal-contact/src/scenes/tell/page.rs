@@ -15,32 +15,75 @@ const SCRIPT: &str = include_str!("page/page.js");
 /// How the values of a field are read on the page.
 pub(crate) const READING: &str = "A click, or the arrow keys, read the value of a cell; a double click, + and - zoom, and so does the wheel with shift or control.";
 
-/// The text of `report.html`: a heading, the content below it, and sections of (id, name in the list, heading,
-/// content).
-pub(crate) fn html(title: &str, head: &Markup, sections: &[(&str, &str, &str, Markup)]) -> String {
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="generator" content=(concat!("fractal-contact ", env!("CARGO_PKG_VERSION")));
-                title { (title) }
-                style { (PreEscaped(STYLE)) }
+/// A page: a heading, the content below it, and its sections.
+pub(crate) struct Page {
+    pub title: String,
+    pub head: Markup,
+    pub sections: Vec<Section>,
+}
+
+/// A section of a page.
+pub(crate) struct Section {
+    pub id: &'static str,
+    /// Its name in the list of sections.
+    pub name: &'static str,
+    pub heading: &'static str,
+    pub content: Markup,
+}
+
+impl Page {
+    /// The whole page, as `report.html` has it.
+    pub fn html(&self) -> String {
+        let Self { title, head, sections } = self;
+        let page = html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    meta name="generator" content=(concat!("fractal-contact ", env!("CARGO_PKG_VERSION")));
+                    title { (title) }
+                    style { (PreEscaped(STYLE)) }
+                }
+                body {
+                    header { h1 { (title) } (head) }
+                    nav aria-label="Sections" { ul {
+                        @for Section { id, name, .. } in sections { li { a href={ "#" (id) } { (name) } } }
+                    } }
+                    main { (self.sections()) }
+                    footer { p { "fractal-contact " (env!("CARGO_PKG_VERSION")) } }
+                    script id="palette" type="application/octet-stream" { (PreEscaped(palette())) }
+                    script { (PreEscaped(SCRIPT)) }
+                }
             }
-            body {
-                header { h1 { (title) } (head) }
-                nav aria-label="Sections" { ul {
-                    @for (id, name, ..) in sections { li { a href={ "#" (id) } { (name) } } }
-                } }
-                main { @for (id, _, heading, content) in sections { section id=(id) { h2 { (heading) } (content) } } }
-                footer { p { "fractal-contact " (env!("CARGO_PKG_VERSION")) } }
-                script id="palette" type="application/octet-stream" { (PreEscaped(STANDARD.encode(Palette::ALL.map(Palette::colours).as_flattened().as_flattened()))) }
-                script { (PreEscaped(SCRIPT)) }
+        };
+        page.into_string()
+    }
+
+    /// What stands below the title, for a page with another frame. That page brings the
+    /// [`page_parts`].
+    pub fn content(&self) -> String {
+        html! { (self.head) (self.sections()) }.into_string()
+    }
+
+    fn sections(&self) -> Markup {
+        html! {
+            @for Section { id, heading, content, .. } in &self.sections {
+                section id=(id) { h2 { (heading) } (content) }
             }
         }
-    };
-    page.into_string()
+    }
+}
+
+/// The colours of all palettes, three bytes each, in base 64, as [`SCRIPT`] reads them.
+fn palette() -> String {
+    STANDARD.encode(Palette::ALL.map(Palette::colours).as_flattened().as_flattened())
+}
+
+/// What a page of one's own needs to show reports in its frame: the style, the script that makes fields readable, and
+/// the palettes, which that script reads from an element with the identifier `palette`.
+pub fn page_parts() -> [String; 3] {
+    [STYLE.to_owned(), SCRIPT.to_owned(), palette()]
 }
 
 /// A sentence in which text between backticks becomes code.

@@ -4,7 +4,7 @@ use crate::scenes::plan::{Cost, Plan, PredictedFrom};
 use crate::scenes::read::{HEIGHTS, Result, SceneFile, number, short, words};
 use crate::scenes::run::field_pictures::FieldOfState;
 use crate::scenes::run::{FieldFile, FieldView, SceneOutcome, SolvedUnit, StateRecord, field_pictures};
-use crate::scenes::tell::page::Reading;
+use crate::scenes::tell::page::{Page, Reading, Section};
 use crate::scenes::tell::{MapStatisticsTables, StateTable, columns, distributions, page, pictures, summary};
 use contact_model::Value;
 use contact_model::quantities::{Role, StateQuantity};
@@ -28,11 +28,20 @@ pub(crate) struct Report<'a> {
 }
 
 impl Report<'_> {
+    /// The numbers of a single state and its fields, as HTML.
+    ///
+    /// # Errors
+    /// Pictures that cannot be encoded.
+    pub fn of_one_state(&self) -> Result<String> {
+        let fields = self.fields()?;
+        Ok(html! { (self.tables()) (fields) }.into_string())
+    }
+
     /// The page.
     ///
     /// # Errors
     /// Pictures that cannot be encoded.
-    pub fn html(&self) -> Result<String> {
+    pub fn page(&self) -> Result<Page> {
         let name = words::scene_name(self.scene());
         let (curves, fields, distributions) = (self.curves()?, self.fields()?, self.distributions()?);
         let spectrum = self.spectrum()?;
@@ -48,17 +57,18 @@ impl Report<'_> {
         };
         let surface = html! { (self.surface()) (spectrum) };
         let scene = html! { pre { (self.scene().text) } };
-        let sections = [
-            ("results", "Results", "Results", results),
-            ("fields", "Map, pressure and gap", "Map, pressure and gap", fields),
-            ("surface", "Surface", "The surface, as it was understood", surface),
-            ("certificates", "How sure", "How sure the solutions are", self.certificates()),
-            ("effects", "Effects", "Effects and outputs", self.effects()),
-            ("work", "Work and time", "Work and time", self.work()),
-            ("cite", "Sources", "Sources to cite", self.sources()),
-            ("scene", "Scene", "The scene", scene),
+        let section = |id, name, heading, content| Section { id, name, heading, content };
+        let sections = vec![
+            section("results", "Results", "Results", results),
+            section("fields", "Map, pressure and gap", "Map, pressure and gap", fields),
+            section("surface", "Surface", "The surface, as it was understood", surface),
+            section("certificates", "How sure", "How sure the solutions are", self.certificates()),
+            section("effects", "Effects", "Effects and outputs", self.effects()),
+            section("work", "Work and time", "Work and time", self.work()),
+            section("cite", "Sources", "Sources to cite", self.sources()),
+            section("scene", "Scene", "The scene", scene),
         ];
-        Ok(page::html(&name, &head, &sections))
+        Ok(Page { title: name, head, sections })
     }
 
     fn scene(&self) -> &SceneFile {
@@ -313,7 +323,9 @@ impl Report<'_> {
                     @if drawn.len() + zeros < views.len() { " " (drawn.len()) " of " (views.len()) " fields are shown, " (which) "; the others are files beside this page." }
                 }
                 @for of_state in drawn.chunk_by(|a, b| a.0 == b.0 && index(a.1) == index(b.1)) {
-                    div.fields { @for (_, _, figure) in of_state { (PreEscaped(figure)) } }
+                    @let (is_surface, state, _) = &of_state[0];
+                    @let state = state.filter(|_| !is_surface).map(|state| state.words(self.scene()));
+                    div.fields data-state=[state] { @for (_, _, figure) in of_state { (PreEscaped(figure)) } }
                 }
             }
         })

@@ -3,6 +3,7 @@
 
 use crate::scenes::read::{HEIGHTS, Result, description};
 use crate::scenes::run::{FieldView, field_pictures};
+use crate::scenes::tell::page::{Page, Section};
 use crate::scenes::tell::{MapStatisticsTables, page};
 use contact_model::HeightMap;
 use maud::{Markup, html};
@@ -28,7 +29,7 @@ impl SurfaceReport<'_> {
     ///
     /// # Errors
     /// Pictures that cannot be encoded.
-    pub fn html(&self) -> Result<String> {
+    pub fn page(&self) -> Result<Page> {
         let head = html! { p.lead { "A surface: its map, what its file says, and statistics with their intervals." } };
         let file = html! {
             pre { (self.metadata) }
@@ -46,14 +47,20 @@ impl SurfaceReport<'_> {
         };
         let map =
             html! { @if !self.statistics.profile { p { (page::READING) } } div.fields { (self.field()?) } };
-        let sections = [
-            ("map", "Map", "The map", map),
-            ("statistics", "Statistics", "Statistics", statistics),
-            ("curves", "Curves", "Spectrum, differences, slopes, heights", html! { div.charts { (charts) } }),
-            ("file", "File", "What the file says", file),
-            ("cite", "Sources", "Sources to cite", sources()),
+        let section = |id, name, heading, content| Section { id, name, heading, content };
+        let sections = vec![
+            section("map", "Map", "The map", map),
+            section("statistics", "Statistics", "Statistics", statistics),
+            section(
+                "curves",
+                "Curves",
+                "Spectrum, differences, slopes, heights",
+                html! { div.charts { (charts) } },
+            ),
+            section("file", "File", "What the file says", file),
+            section("cite", "Sources", "Sources to cite", sources()),
         ];
-        Ok(page::html(self.name, &head, &sections))
+        Ok(Page { title: self.name.to_owned(), head, sections })
     }
 
     fn field(&self) -> Result<Markup> {

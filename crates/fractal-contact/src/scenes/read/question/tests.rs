@@ -191,6 +191,7 @@ fn file(system: System) -> BoxedStrategy<AskedFile> {
     (path, declared, preprocessing(dimension), of(select(Detrend::ALL.to_vec())), twin, of(any::<bool>()))
         .prop_map(|(path, declared, preprocessing, detrend, twin, keep_heights)| AskedFile {
             path,
+            content: None,
             declared,
             preprocessing,
             detrend,
@@ -401,7 +402,7 @@ fn every_way_to_ask_has_the_same_stored_keys() {
     use crate::scenes::SceneFile;
     use crate::scenes::run::scene_jobs;
     let keys = |scene: &SceneFile| -> Vec<String> {
-        scene_jobs(scene, std::path::Path::new("out")).iter().map(runs::Job::stored_key).collect()
+        scene_jobs(scene, &std::path::Path::new("out").into()).iter().map(runs::Job::stored_key).collect()
     };
     let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data/scenes");
     let mut count = 0;

@@ -1,9 +1,10 @@
 "use strict";
 // Every field becomes a canvas: a click or the arrow keys read a value, the wheel and + and - zoom. Without scripts its picture stays.
+// A page that shows a report in its own frame calls showFields and showStates with the element that holds it.
 const bytes = (text) => Uint8Array.from(atob(text.trim()), (c) => c.charCodeAt(0)).buffer;
 const palette = new Uint8Array(bytes(document.getElementById("palette").textContent));
 
-document.querySelectorAll("figure.field[data-field]").forEach((figure) => {
+const showFields = (root) => root.querySelectorAll("figure.field[data-field]").forEach((figure) => {
   const f = JSON.parse(figure.dataset.field);
   const values = new Float32Array(bytes(figure.querySelector(".values").textContent));
   const places = new Uint8Array(bytes(figure.querySelector(".places").textContent));
@@ -152,3 +153,25 @@ document.querySelectorAll("figure.field[data-field]").forEach((figure) => {
   all.addEventListener("click", whole);
   draw();
 });
+
+// Where there are several states, a slider goes through their fields; at its left end all of them are shown.
+const showStates = (root) => {
+  const rows = [...root.querySelectorAll("div.fields[data-state]")];
+  if (rows.length < 2) return;
+  const [label, slider, shown] = ["label", "input", "span"].map((name) => document.createElement(name));
+  Object.assign(slider, { type: "range", min: 0, max: rows.length, value: 0 });
+  const show = () => {
+    const chosen = Number(slider.value);
+    rows.forEach((row, i) => { row.hidden = chosen > 0 && i !== chosen - 1; });
+    shown.textContent = chosen ? rows[chosen - 1].dataset.state : "all states";
+    slider.setAttribute("aria-valuetext", shown.textContent);
+  };
+  slider.addEventListener("input", show);
+  label.className = "states";
+  label.append("Fields of ", slider, shown);
+  rows[0].before(label);
+  show();
+};
+
+showFields(document);
+showStates(document);
