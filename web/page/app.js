@@ -373,6 +373,16 @@ const refresh = async (surfaceToo) => {
   tell("The question is being read.");
   const keys = JSON.stringify(asked());
   try {
+    // A random surface that is too large is not drawn.
+    if (surfaceToo && !isFile()) {
+      const plan = await solver.ask("plan", keys);
+      if (mine !== turn) return;
+      if (plan.memory > MOST_MEMORY) {
+        showMistake(null);
+        tooLarge(plan.memory, plan.grids);
+        return tell("This surface is too large for a browser.");
+      }
+    }
     if (surfaceToo) {
       const surface = await solver.ask("surface", keys);
       if (mine !== turn) return;

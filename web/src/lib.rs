@@ -11,7 +11,7 @@ mod form;
 mod question;
 mod solved;
 
-use fractal_contact::scenes::{AskedFile, Error, Plan, describe_file, run_in_memory};
+use fractal_contact::scenes::{AskedFile, Error, Plan, describe_file, required_memory, run_in_memory};
 use question::{Given, Mistake, OpenedFile};
 use serde_json::json;
 use solved::Solved;
@@ -96,19 +96,17 @@ impl Session {
         })
     }
 
-    /// Reads and plans a question, as JSON: `{"scene", "plan", "notes", "memory", "cells"}`. `scene` is the text of the
+    /// Reads and plans a question, as JSON: `{"scene", "plan", "notes", "memory", "grids"}`. `scene` is the text of the
     /// scene that gives the same numbers with the program, `memory` the bytes that the largest model needs.
     pub fn plan(&self, keys: &str) -> String {
         answer(|| {
             let scene = Given::parse(keys)?.scene(self.file.as_ref())?;
             let plan = Plan::new(&scene)?;
-            let memory =
-                plan.models.iter().filter_map(|model| model.predicted.as_ref()).map(|cost| cost.memory);
             Ok(json!({
                 "scene": scene.text,
                 "plan": plan.to_string(),
                 "notes": scene.notes.iter().chain(&plan.notes).map(ToString::to_string).collect::<Vec<_>>(),
-                "memory": memory.fold(0.0, f64::max),
+                "memory": required_memory(&scene),
                 "grids": plan.models.iter().map(|model| model.grid.clone()).collect::<Vec<_>>(),
             }))
         })

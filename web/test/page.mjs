@@ -197,6 +197,32 @@ test("a solve is stopped, and states that were solved stay", async () => {
   await page.context().close();
 });
 
+test("what is too large for a browser is offered coarser", async () => {
+  const given = new URLSearchParams([["scene.models", "bem3d"], ["scene.surface.kind", "self_affine"], ["scene.surface.side", "100 um"], ["scene.surface.hurst", "0.8"], ["scene.surface.rms_height", "100 nm"],
+    ["sampling.seed", "1"], ["models.bem3d.cells", "8192"], ["scene.contact_modulus", "100 GPa"], ["scene.mean_pressure", "100 MPa"]]);
+  const page = await opened(`${served}#${given}`);
+  await told(page, "too large");
+  assert.match(await page.textContent("#ui-mistake"), /8192 x 8192 cells need/);
+  await page.click("#ui-mistake button");
+  assert(Number(await page.inputValue('[id="ui-key-models.bem3d.cells"]')) > 1000);
+  await page.context().close();
+});
+
+test("friction is asked by a path", async () => {
+  const page = await opened(served);
+  await example(page);
+  await settled(page);
+  await put(page, "effects.friction", "0.3");
+  await page.waitForSelector("#ui-mistake:not([hidden])");
+  await page.click("#ui-path button");
+  await page.click("#ui-path button:nth-of-type(1)");
+  await put(page, "scene.path.0.mean_pressure", "20 MPa");
+  await put(page, "scene.path.1.tangential_force", "50 mN");
+  await solved(page);
+  assert.match(await page.textContent("#ui-report"), /stick/);
+  await page.context().close();
+});
+
 test("hostile files give a message, and the page lives on", async () => {
   const page = await opened(served);
   const files = JSON.parse(execFileSync("python3", [path.join(data, "../.ci/fuzz"), "--files", "100", "--seed", "1", "--into", path.join(scratch, "hostile")], { maxBuffer: 1 << 28 }));

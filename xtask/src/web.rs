@@ -24,7 +24,7 @@ const ALONE: &str = "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe
 pub fn build(arguments: &WebArguments) -> Result<()> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap_or(Path::new("."));
     let made = compile(root, arguments.build_std)?;
-    let page = Page::read(root, &made)?;
+    let page = BrowserPage::read(root, &made)?;
     let out = &arguments.out;
     runs::files::create_directory(&out.join("examples"))?;
     let write = |name: &str, bytes: &[u8]| Ok::<(), Error>(runs::files::write_whole(&out.join(name), bytes)?);
@@ -86,7 +86,7 @@ fn run(command: &mut Command, help: &str) -> Result<()> {
 }
 
 /// The parts of the page.
-struct Page {
+struct BrowserPage {
     html: String,
     style: String,
     report: String,
@@ -98,7 +98,7 @@ struct Page {
     examples: Vec<Vec<u8>>,
 }
 
-impl Page {
+impl BrowserPage {
     fn read(root: &Path, made: &Path) -> Result<Self> {
         let bytes = |path: PathBuf| runs::files::read(&path, u64::MAX).map_err(Error::from);
         let text = |name: &str| {

@@ -82,7 +82,7 @@ mod tell;
 
 pub use analysis::AccuracyTarget;
 pub use answer::{RunInMemory, run, run_in_memory, run_scene_shard};
-pub use plan::calibration::seconds_of_rough_sweep;
+pub use plan::calibration::{required_memory, seconds_of_rough_sweep};
 pub use plan::cost::Cost;
 pub use plan::model_on_surface::FORMAT;
 pub use plan::scene_plan::{ModelPlan, Plan, PredictedFrom, check};

@@ -235,6 +235,11 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
     cost
 }
 
+/// Memory that a scene needs where its models are solved one after the other, bytes. It is an upper estimate.
+pub fn required_memory(scene: &SceneFile) -> f64 {
+    scene.models.iter().map(|numerics| memory(scene, numerics)).fold(0.0, f64::max)
+}
+
 /// Memory that a model needs for one surface under the loads of the scene, bytes; at least 1. Where it is not known
 /// what they fill, that of contact everywhere.
 pub(crate) fn memory(scene: &SceneFile, numerics: &Numerics) -> f64 {

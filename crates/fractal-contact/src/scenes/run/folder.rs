@@ -1,11 +1,29 @@
 //! Where the files of a run are: in a directory, or in memory where there is no file system.
 
 use crate::scenes::read::Result;
-use crate::scenes::run::StoredFile;
+use runs::fnv1a_128;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
+
+/// A file that belongs to a state.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct StoredFile {
+    /// Relative to the folder of the results.
+    pub name: String,
+    pub bytes: u64,
+    /// [`fnv1a_128`] of its bytes.
+    pub digest: u128,
+}
+
+impl StoredFile {
+    /// The record of a file with these bytes.
+    pub fn of(name: String, content: &[u8]) -> Self {
+        Self { name, bytes: content.len() as u64, digest: fnv1a_128(content) }
+    }
+}
 
 /// The files of a run by their names, which are relative to the folder.
 #[derive(Debug, Clone)]

@@ -15,13 +15,13 @@ pub(crate) mod warnings;
 
 pub(crate) use field_pictures::is_hidden;
 pub(crate) use field_view::FieldView;
-pub(crate) use folder::Folder;
+pub(crate) use folder::{Folder, StoredFile};
 pub(crate) use outcome::{Options, SceneOutcome};
 pub(crate) use path_keeper::{KeepResult, Keeper};
 pub(crate) use pilot::{SharedStop, remove_trials, take_trial};
 pub(crate) use scene_job::{SceneJob, scene_jobs, units};
 pub(crate) use shared_lines::SharedLines;
 pub(crate) use state_result::{
-    Answer, AnsweredState, FieldFile, ModelResult, SolvedUnit, StateRecord, StoredFile, field_of_file,
+    Answer, AnsweredState, FieldFile, ModelResult, SolvedUnit, StateRecord, field_of_file,
 };
 pub(crate) use warnings::{Concerned, Warning, rests_on_few_cells};

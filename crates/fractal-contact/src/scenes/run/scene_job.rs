@@ -184,7 +184,8 @@ mod tests {
     use super::*;
     use crate::scenes::plan::grid_comparison::GridErrors;
     use crate::scenes::read::distributed::Distributed;
-    use crate::scenes::run::state_result::{Answer, AnsweredState, StateRecord, StoredFile};
+    use crate::scenes::run::StoredFile;
+    use crate::scenes::run::state_result::{Answer, AnsweredState, StateRecord};
     use crate::scenes::run::warnings::Warning;
     use contact_model::{Branch, ContactState, Normalisation, Patches, SolveReport, Status};
 

@@ -2,10 +2,9 @@
 
 use crate::scenes::plan::GridErrors;
 use crate::scenes::read::{Bin, Distributed, HEIGHTS, SceneFile, amount, words};
-use crate::scenes::run::{Folder, Warning};
+use crate::scenes::run::{Folder, StoredFile, Warning};
 use contact_model::quantities::StateQuantity;
 use contact_model::{ContactState, FIELDS, Normalisation, Status};
-use runs::fnv1a_128;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -149,23 +148,6 @@ pub(crate) struct SolvedUnit<'a> {
     pub model: &'static str,
     pub surface: usize,
     pub states: &'a [StateRecord],
-}
-
-/// A file that belongs to a state.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub(crate) struct StoredFile {
-    /// Relative to the folder of the results.
-    pub name: String,
-    pub bytes: u64,
-    /// [`fnv1a_128`] of its bytes.
-    pub digest: u128,
-}
-
-impl StoredFile {
-    /// The record of a file with these bytes.
-    pub fn of(name: String, content: &[u8]) -> Self {
-        Self { name, bytes: content.len() as u64, digest: fnv1a_128(content) }
-    }
 }
 
 /// The parts of the name of a field's file.

@@ -13,17 +13,17 @@ const STYLE: &str = include_str!("page/page.css");
 const SCRIPT: &str = include_str!("page/page.js");
 
 /// How the values of a field are read on the page.
-pub(crate) const READING: &str = "A click, or the arrow keys, read the value of a cell; a double click, + and - zoom, and so does the wheel with shift or control.";
+pub(crate) const READING: &str = "The mouse, a click or the arrow keys read the value of a cell; a double click, + and - zoom, and so does the wheel with shift or control.";
 
 /// A page: a heading, the content below it, and its sections.
-pub(crate) struct Page {
+pub(crate) struct ReportPage {
     pub title: String,
     pub head: Markup,
-    pub sections: Vec<Section>,
+    pub sections: Vec<PageSection>,
 }
 
 /// A section of a page.
-pub(crate) struct Section {
+pub(crate) struct PageSection {
     pub id: &'static str,
     /// Its name in the list of sections.
     pub name: &'static str,
@@ -31,7 +31,7 @@ pub(crate) struct Section {
     pub content: Markup,
 }
 
-impl Page {
+impl ReportPage {
     /// The whole page, as `report.html` has it.
     pub fn html(&self) -> String {
         let Self { title, head, sections } = self;
@@ -48,7 +48,7 @@ impl Page {
                 body {
                     header { h1 { (title) } (head) }
                     nav aria-label="Sections" { ul {
-                        @for Section { id, name, .. } in sections { li { a href={ "#" (id) } { (name) } } }
+                        @for PageSection { id, name, .. } in sections { li { a href={ "#" (id) } { (name) } } }
                     } }
                     main { (self.sections()) }
                     footer { p { "fractal-contact " (env!("CARGO_PKG_VERSION")) } }
@@ -68,7 +68,7 @@ impl Page {
 
     fn sections(&self) -> Markup {
         html! {
-            @for Section { id, heading, content, .. } in &self.sections {
+            @for PageSection { id, heading, content, .. } in &self.sections {
                 section id=(id) { h2 { (heading) } (content) }
             }
         }

@@ -4,7 +4,7 @@ use crate::scenes::plan::{Cost, Plan, PredictedFrom};
 use crate::scenes::read::{HEIGHTS, Result, SceneFile, number, short, words};
 use crate::scenes::run::field_pictures::FieldOfState;
 use crate::scenes::run::{FieldFile, FieldView, SceneOutcome, SolvedUnit, StateRecord, field_pictures};
-use crate::scenes::tell::page::{Page, Reading, Section};
+use crate::scenes::tell::page::{PageSection, Reading, ReportPage};
 use crate::scenes::tell::{MapStatisticsTables, StateTable, columns, distributions, page, pictures, summary};
 use contact_model::Value;
 use contact_model::quantities::{Role, StateQuantity};
@@ -41,7 +41,7 @@ impl Report<'_> {
     ///
     /// # Errors
     /// Pictures that cannot be encoded.
-    pub fn page(&self) -> Result<Page> {
+    pub fn page(&self) -> Result<ReportPage> {
         let name = words::scene_name(self.scene());
         let (curves, fields, distributions) = (self.curves()?, self.fields()?, self.distributions()?);
         let spectrum = self.spectrum()?;
@@ -57,7 +57,7 @@ impl Report<'_> {
         };
         let surface = html! { (self.surface()) (spectrum) };
         let scene = html! { pre { (self.scene().text) } };
-        let section = |id, name, heading, content| Section { id, name, heading, content };
+        let section = |id, name, heading, content| PageSection { id, name, heading, content };
         let sections = vec![
             section("results", "Results", "Results", results),
             section("fields", "Map, pressure and gap", "Map, pressure and gap", fields),
@@ -68,7 +68,7 @@ impl Report<'_> {
             section("cite", "Sources", "Sources to cite", self.sources()),
             section("scene", "Scene", "The scene", scene),
         ];
-        Ok(Page { title: name, head, sections })
+        Ok(ReportPage { title: name, head, sections })
     }
 
     fn scene(&self) -> &SceneFile {

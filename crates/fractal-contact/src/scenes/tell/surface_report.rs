@@ -3,7 +3,7 @@
 
 use crate::scenes::read::{HEIGHTS, Result, description};
 use crate::scenes::run::{FieldView, field_pictures};
-use crate::scenes::tell::page::{Page, Section};
+use crate::scenes::tell::page::{PageSection, ReportPage};
 use crate::scenes::tell::{MapStatisticsTables, page};
 use contact_model::HeightMap;
 use maud::{Markup, html};
@@ -29,7 +29,7 @@ impl SurfaceReport<'_> {
     ///
     /// # Errors
     /// Pictures that cannot be encoded.
-    pub fn page(&self) -> Result<Page> {
+    pub fn page(&self) -> Result<ReportPage> {
         let head = html! { p.lead { "A surface: its map, what its file says, and statistics with their intervals." } };
         let file = html! {
             pre { (self.metadata) }
@@ -47,7 +47,7 @@ impl SurfaceReport<'_> {
         };
         let map =
             html! { @if !self.statistics.profile { p { (page::READING) } } div.fields { (self.field()?) } };
-        let section = |id, name, heading, content| Section { id, name, heading, content };
+        let section = |id, name, heading, content| PageSection { id, name, heading, content };
         let sections = vec![
             section("map", "Map", "The map", map),
             section("statistics", "Statistics", "Statistics", statistics),
@@ -60,7 +60,7 @@ impl SurfaceReport<'_> {
             section("file", "File", "What the file says", file),
             section("cite", "Sources", "Sources to cite", sources()),
         ];
-        Ok(Page { title: self.name.to_owned(), head, sections })
+        Ok(ReportPage { title: self.name.to_owned(), head, sections })
     }
 
     fn field(&self) -> Result<Markup> {

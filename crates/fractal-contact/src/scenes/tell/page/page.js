@@ -94,16 +94,20 @@ const showFields = (root) => root.querySelectorAll("figure.field[data-field]").f
       to.stroke();
     }
   };
-  const choose = (i, j) => {
-    chosen = [Math.min(Math.max(0, i), f.across - 1), Math.min(Math.max(0, j), f.down - 1)];
-    const at = chosen[1] * f.across + chosen[0];
+  const within = (i, j) => [Math.min(Math.max(0, i), f.across - 1), Math.min(Math.max(0, j), f.down - 1)];
+  const read = ([i, j]) => {
+    const at = j * f.across + i;
     // Of several cells on a pixel one is shown.
-    const column = Math.floor((chosen[0] * f.columns) / f.across) + (places[2 * at] || 0);
-    const row = Math.floor((chosen[1] * f.rows) / f.down) + (places[2 * at + 1] || 0);
+    const column = Math.floor((i * f.columns) / f.across) + (places[2 * at] || 0);
+    const row = Math.floor((j * f.rows) / f.down) + (places[2 * at + 1] || 0);
     const measure = () => `${(values[at] * f.per).toPrecision(7)} ${f.unit}`;
     const value = !Number.isFinite(values[at]) ? "undefined" : f.classes.length ? f.classes[values[at]] : measure();
     output.textContent = `${f.quantity} ${value} at column ${column}, row ${row}: x = ${digits(((column + 0.5) / f.columns) * length, 4)}, ` +
       `y = ${digits(((row + 0.5) / f.rows) * height, 4)} ${f.length}`;
+  };
+  const choose = (i, j) => {
+    chosen = within(i, j);
+    read(chosen);
     const [w, h] = [f.across / zoom, f.down / zoom];
     if (chosen[0] < left || chosen[0] >= left + w) left = chosen[0] - w / 2;
     if (f.down - 1 - chosen[1] < top || f.down - 1 - chosen[1] >= top + h) top = f.down - chosen[1] - h / 2;
@@ -125,10 +129,14 @@ const showFields = (root) => root.querySelectorAll("figure.field[data-field]").f
   const middle = () => chosen ? [chosen[0] + 0.5, f.down - chosen[1] - 0.5] : [left + f.across / zoom / 2, top + f.down / zoom / 2];
   const whole = () => { zoom = 1; draw(); };
 
-  canvas.addEventListener("click", (event) => {
+  const cell = (event) => {
     const [x, y] = under(event);
-    choose(Math.floor(x), f.down - 1 - Math.floor(y));
-  });
+    return within(Math.floor(x), f.down - 1 - Math.floor(y));
+  };
+  canvas.addEventListener("click", (event) => choose(...cell(event)));
+  // A mouse reads as it passes; what it leaves is the value of the chosen cell.
+  canvas.addEventListener("pointermove", (event) => { if (event.pointerType === "mouse") read(cell(event)); });
+  canvas.addEventListener("pointerleave", () => { if (chosen) read(chosen); });
   // With a key, so that the page can be scrolled over a map.
   canvas.addEventListener("wheel", (event) => {
     if (!event.ctrlKey && !event.shiftKey) return;
