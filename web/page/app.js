@@ -89,7 +89,7 @@ const asked = () => {
   const known = new Set(solver.form.keys.filter((key) => key.table === "scene.surface" && key.kind === kind()).map((key) => `scene.surface.${key.name}`));
   const model = values.get("scene.models");
   return [...values].filter(([key, text]) => {
-    if (!text.trim() || key === "example") return false;
+    if (!text.trim() || key === "example" || key === "scene.surface.path") return false;
     if (key.startsWith("scene.surface.")) return known.has(key);
     if (key.startsWith("models.")) return key.startsWith(`models.${model}.`) && !(isFile() && /\.(cells|rows)$/.test(key));
     if (hasPath() && LOADS.some((load) => key === `scene.${load}`)) return false;
@@ -101,6 +101,7 @@ const fragment = () => {
 };
 
 const set = (key, text) => {
+  if ((values.get(key) || "") === text) return;
   if (text.trim()) values.set(key, text);
   else values.delete(key);
   fragment();
@@ -224,15 +225,19 @@ const drawPath = () => {
   const add = element("button", { type: "button", textContent: count ? "Add a step" : "Prescribe a path of loads" });
   add.addEventListener("click", () => {
     const load = LOADS.find((name) => values.has(`scene.${name}`) && name !== "force_bar");
-    const text = load ? values.get(`scene.${load}`).split(",")[0].trim() : "1 MPa";
-    values.set(count ? `scene.path.${count}.states` : `scene.path.0.${load || "mean_pressure"}`, count ? "8" : text);
+    const texts = load ? values.get(`scene.${load}`).split(",").map((text) => text.trim()) : ["1 MPa"];
+    // Loads one by one become the steps of the path.
+    if (count) values.set(`scene.path.${count}.states`, "8");
+    else texts.forEach((text, i) => values.set(`scene.path.${i}.${load || "mean_pressure"}`, text));
     draw();
+    fragment();
     changed("scene.path");
   });
   const drop = element("button", { type: "button", textContent: "Remove the path" });
   drop.addEventListener("click", () => {
     [...values.keys()].filter((key) => key.startsWith("scene.path.")).forEach((key) => values.delete(key));
     draw();
+    fragment();
     changed("scene.path");
   });
   const why = element("p", { className: "faint", textContent: "Friction with a tangential force, loading and unloading, and time need a path: the ends of straight pieces, in their order." });
@@ -271,6 +276,7 @@ const draw = () => {
 
 // ---- Answers ------------------------------------------------------------------------------------------------------------------------------
 
+const cut = (text, most = 60) => (text.length > most ? `${text.slice(0, most)}…` : text);
 const tell = (text) => { $("ui-status").textContent = text; };
 const showMistake = (mistake) => {
   document.querySelectorAll(".key.wrong").forEach((line) => line.classList.remove("wrong"));
@@ -278,9 +284,15 @@ const showMistake = (mistake) => {
   const box = $("ui-mistake");
   box.hidden = !mistake;
   if (!mistake) return;
-  const { message, help, key } = mistake;
+  const { key } = mistake;
+  const [message, help] = [mistake.message, mistake.help && !/\[\[scene\.path\]\]/.test(mistake.help) ? mistake.help : mistake.help && "press “Prescribe a path of loads”, and give a tangential force in its second step"].map((text) => text && cut(text, 600));
   box.replaceChildren(element("strong", { textContent: key ? said(key.split(".").at(-1)) : "This cannot be answered yet" }),
     element("pre", { textContent: message }), ...(help ? [element("p", {}, ...marked(`${help}.`))] : []));
+  if (key && !rows.has(key)) {
+    const remove = element("button", { type: "button", textContent: `Remove ${cut(key)}` });
+    remove.addEventListener("click", () => { values.delete(key); fragment(); changed(key); });
+    box.append(remove);
+  }
   const line = rows.get(key);
   if (!line) return;
   line.closest("details")?.setAttribute("open", "");
@@ -305,10 +317,11 @@ const showSurface = ({ channels, missing = [], page, error, mistake }) => {
   document.querySelectorAll(".key.missing").forEach((line) => line.classList.remove("missing"));
   const of = isFile() ? channels?.channels || [] : [];
   const choice = of.length > 1 ? [element("div", { className: "key" }, element("label", { htmlFor: "ui-channel", textContent: "channel" }),
-    Object.assign(element("select", { id: "ui-channel" }, element("option", { value: "", textContent: "the only one of heights" }),
+    Object.assign(element("select", { id: "ui-channel" }, element("option", { value: "", textContent: "choose one" }),
       ...of.map((channel, i) => element("option", { value: String(i), textContent: `${i}: ${channel.name || "without a name"}${channel.heights === false ? " (no heights)" : ""}${channel.columns ? `, ${channel.columns} x ${channel.rows}` : ""}` }))),
       { value: values.get("scene.surface.channel") || "", onchange: (event) => set("scene.surface.channel", event.target.value) }))] : [];
   $("ui-channels").replaceChildren(...choice);
+  rows.get("scene.surface.channel")?.toggleAttribute("hidden", choice.length > 0);
   const more = missing.flatMap(({ key, instead }) => [key, ...(instead ? [instead[0]] : [])]).map((key) => `scene.surface.${key}`);
   if (more.some((key) => !needed.has(key))) {
     more.forEach((key) => needed.add(key));
@@ -325,19 +338,34 @@ const showSurface = ({ channels, missing = [], page, error, mistake }) => {
   }
   const details = $("ui-surface");
   details.hidden = !page && !error;
+  if (!page) details.open = true;
   const container = details.querySelector("div");
   if (page) showPage(container, page);
-  else container.replaceChildren(element("p", { textContent: error || "" }));
+  else container.replaceChildren(element("p", { className: "verdict warned", textContent: error || "" }));
   return missing.length === 0 && Boolean(page) && !mistake;
 };
 
 let turn = 0;
 let solving = false;
+let stopping = false;
 let waiting = null;
+let reading = null; // The question that the solver is reading.
+let ready = false; // Whether the question that was read can be solved.
+let surfaceIsOld = true;
+let solvedKeys = null; // What the results that are shown answer.
 const changed = (key) => {
   if (key === "scene.models" || key === "scene.surface.kind") draw();
+  surfaceIsOld ||= /^scene\.surface\.|^example$|^sampling|cells$/.test(key);
   clearTimeout(waiting);
-  waiting = setTimeout(() => refresh(/^scene\.surface\.|^example$|^sampling|cells$/.test(key)), 250);
+  waiting = setTimeout(() => { waiting = null; refresh(false); }, 250);
+  showAge();
+};
+// Results of another question say so.
+const question = () => `${isFile() ? file?.name : ""} ${JSON.stringify(asked())}`;
+const showAge = () => {
+  const old = solvedKeys !== null && solvedKeys !== question();
+  $("ui-old").hidden = !old;
+  $("ui-report").classList.toggle("old", old);
 };
 
 // Memory of WebAssembly is 4 GiB; what is already held needs room too.
@@ -362,13 +390,32 @@ const tooLarge = (memory, grids) => {
     coarser, " ", ...(isFile() ? [crop] : []));
 };
 
+// Reads the question, and the surface where it is another one. Of several that come while one is read, the last is read next.
 const refresh = async (surfaceToo) => {
-  const mine = (turn += 1);
-  if (solving || !solver.form) return;
-  $("ui-solve").disabled = true;
+  turn += 1;
+  surfaceIsOld ||= surfaceToo;
+  if (reading) {
+    // The loop below reads again.
+    while (reading) await reading;
+    return;
+  }
+  while (!solving && solver.form) {
+    const mine = turn;
+    ready = false;
+    reading = readQuestion(mine, surfaceIsOld);
+    surfaceIsOld = false;
+    await reading;
+    reading = null;
+    $("ui-solve").disabled = !ready;
+    if (mine === turn) break;
+  }
+};
+const readQuestion = async (mine, surfaceToo) => {
+  showAge();
   if (isFile() && !file) {
     showMistake(null);
-    return tell("Drop a file, or choose an example.");
+    const name = values.get("scene.surface.path");
+    return tell(name ? `This link asks of ${name}: drop that file, or another one.` : "Drop a file, or choose an example.");
   }
   tell("The question is being read.");
   const keys = JSON.stringify(asked());
@@ -386,7 +433,8 @@ const refresh = async (surfaceToo) => {
     if (surfaceToo) {
       const surface = await solver.ask("surface", keys);
       if (mine !== turn) return;
-      showMistake(surface.mistake || null);
+      const unread = surface.error && !surface.missing.length ? { message: surface.error } : null;
+      showMistake(surface.mistake || unread);
       if (!showSurface(surface)) return tell(surface.mistake ? "The surface is not understood yet." : surface.missing.length ? "The file does not say everything: see the marked lines." : "This file gives no map yet.");
     }
     const plan = await solver.ask("plan", keys);
@@ -399,7 +447,7 @@ const refresh = async (surfaceToo) => {
       tooLarge(plan.memory, plan.grids);
       return tell("This map is too large for a browser.");
     }
-    $("ui-solve").disabled = false;
+    ready = true;
     tell(`Ready: ${plan.grids.join("; ")}.`);
   } catch (error) {
     if (mine === turn) tell(`The question cannot be read: ${error.message}`);
@@ -427,9 +475,18 @@ const offer = (files, scene) => {
 };
 
 const solve = async () => {
-  if (solving || $("ui-solve").disabled) return;
+  if (solving || stopping) return;
+  // What was typed last is read before it is solved.
+  if (waiting) {
+    clearTimeout(waiting);
+    waiting = null;
+    await refresh(false);
+  }
+  while (reading) await reading;
+  if (solving || !ready) return;
   solving = true;
-  turn += 1;
+  tell("The solve begins.");
+  const answered = question();
   const states = $("ui-states");
   states.replaceChildren(states.firstElementChild);
   states.hidden = true;
@@ -465,7 +522,12 @@ const solve = async () => {
       // The report has all of them.
       states.hidden = true;
       $("ui-surface").open = false;
-      tell(`Solved in ${((performance.now() - begun) / 1000).toPrecision(2)} s.`);
+      solvedKeys = answered;
+      showAge();
+      const { failed, notes } = outcome;
+      const beware = notes.length ? ` ${notes.length === 1 ? "One thing" : `${notes.length} things`} to beware of.` : "";
+      tell(`Solved in ${((performance.now() - begun) / 1000).toPrecision(2)} s.${failed ? ` ${failed === 1 ? "One state was" : `${failed} states were`} refused or missed the tolerance.` : ""}${beware}`);
+      if ($("ui-results").getBoundingClientRect().top < 0 || matchMedia("(max-width: 60rem)").matches) $("ui-results").scrollIntoView();
     }
   } catch (error) {
     tell(error.message);
@@ -474,25 +536,37 @@ const solve = async () => {
 };
 const finish = () => {
   solving = false;
+  if (surfaceIsOld) setTimeout(() => refresh(false));
   solver.told = () => {};
   $("ui-stop").hidden = true;
   $("ui-progress").hidden = true;
-  $("ui-solve").disabled = false;
+  $("ui-solve").disabled = stopping || !ready;
 };
+// Ends the worker: the solver itself is never asked. The next solve begins in a new one.
 const stop = async () => {
+  if (!solving || stopping) return;
+  stopping = true;
   const count = $("ui-states").querySelectorAll(":scope > div").length;
-  await solver.restart(`Stopped. ${count === 1 ? "One state is" : `${count} states are`} solved and stay below.`);
+  const kept = count === 0 ? "No state was solved." : count === 1 ? "One state is solved and stays below." : `${count} states are solved and stay below.`;
+  await solver.restart(`Stopped. ${kept}`);
+  stopping = false;
+  $("ui-solve").disabled = !ready;
 };
 
 // ---- Beginning ----------------------------------------------------------------------------------------------------------------------------
 
+const OF_ONE_FILE = ["channel", "unit", "lateral_unit", "size", "cell", "height_scale", "format", "missing", "skip_lines", "decimal", "axes", "border", "crop", "cells",
+  "rows", "undefined", "fill"];
 const open = async (name, bytes) => {
-  // A channel of another file means nothing here; one of the address is that of the first file.
-  if (file && file.name !== name) values.delete("scene.surface.channel");
+  // What was said of another file is not true of this one; what the address says is of the first.
+  if (file && file.name !== name) OF_ONE_FILE.forEach((key) => values.delete(`scene.surface.${key}`));
   file = { name, bytes };
+  surfaceIsOld = true;
   needed.clear();
   $("ui-file-name").textContent = `${name}, ${bytes.byteLength} bytes`;
   values.set("scene.surface.kind", "file");
+  values.set("scene.surface.path", name);
+  EXAMPLES.find(([known]) => known === values.get("example"))?.[2].forEach(([key, text]) => { if (!values.has(key)) values.set(key, text); });
   draw();
   fragment();
   await solver.ask("open", name, bytes);
@@ -502,20 +576,19 @@ const open = async (name, bytes) => {
 const EXAMPLES = [["polished.x3p", "polished steel, generated", []], ["optical.x3p", "an optical map with undefined points", [["scene.surface.undefined", "no_contact"]]],
   ["uncd-afm.001", "a diamond film by AFM", [["scene.surface.channel", "0"]]]];
 const openExample = async (name) => {
-  const example = EXAMPLES.find(([known]) => known === name);
+  if (!EXAMPLES.some(([known]) => known === name)) throw new Error(`there is no example ${cut(name)}: drop a file`);
   const stored = document.querySelector(`[data-example="${CSS.escape(name)}"]`)?.textContent;
-  const bytes = stored ? decode(stored).buffer : await (await fetch(`examples/${name}`)).arrayBuffer();
+  const fetched = stored ? null : await fetch(`examples/${name}`);
+  if (fetched && !fetched.ok) throw new Error(`the example ${name} is not there: ${fetched.status}`);
   values.set("example", name);
-  await open(name, bytes);
-  example?.[2].forEach(([key, text]) => { if (!values.has(key)) values.set(key, text); });
-  draw();
-  fragment();
-  await refresh(true);
+  await open(name, stored ? decode(stored).buffer : await fetched.arrayBuffer());
 };
 
+// Steps of a path beyond a hundred are for a scene in a file.
+const isStep = (key) => !key.startsWith("scene.path.") || /^scene\.path\.\d{1,2}\./.test(key);
 const begin = async () => {
   const given = [...new URLSearchParams(location.hash.slice(1))];
-  (given.length ? given : BEGIN).forEach(([key, text]) => values.set(key, text));
+  (given.length ? given : BEGIN).filter(([key]) => isStep(key)).forEach(([key, text]) => values.set(key, text));
   if (!values.has("scene.models")) values.set("scene.models", "bem3d");
   if (!values.has("scene.surface.kind")) values.set("scene.surface.kind", "file");
   await solver.start();
@@ -529,13 +602,15 @@ const begin = async () => {
     $("ui-examples").append(button);
   }
   const example = values.get("example");
-  if (example) await openExample(example);
+  if (example) await openExample(example).catch((error) => tell(error.message));
   else await refresh(true);
   document.documentElement.dataset.ready = "true";
 };
 
 $("ui-form").addEventListener("submit", (event) => { event.preventDefault(); solve(); });
 $("ui-stop").addEventListener("click", () => stop());
+// Another address is another question.
+addEventListener("hashchange", () => location.reload());
 document.querySelectorAll("input[name=kind]").forEach((input) => input.addEventListener("change", () => {
   values.set("scene.surface.kind", input.value);
   if (input.value === "self_affine") RANDOM.forEach(([key, text]) => { if (!values.has(key)) values.set(key, text); });
@@ -545,6 +620,9 @@ document.querySelectorAll("input[name=kind]").forEach((input) => input.addEventL
 const take = async (taken) => {
   if (!taken) return;
   values.delete("example");
+  ready = false;
+  $("ui-solve").disabled = true;
+  tell(`${taken.name} is being read: ${(taken.size / 1e6).toPrecision(2)} MB.`);
   try {
     await open(taken.name, await taken.arrayBuffer());
   } catch (error) {

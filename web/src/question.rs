@@ -119,3 +119,47 @@ pub(crate) fn drawn_surface(given: &Given) -> Result<OpenedFile, Mistake> {
     let bytes = surface_io::map_file("gwy", &map, metric).map_err(|error| Mistake::new(error.to_string()))?;
     Ok(OpenedFile { name: "surface.gwy".to_owned(), bytes: bytes.into() })
 }
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used)]
+
+    use super::*;
+
+    fn given(keys: &[(&str, &str)]) -> Given {
+        Given::parse(&serde_json::to_string(keys).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn keys_make_a_scene_in_any_order() {
+        let keys = [
+            ("effects.boundary", "periodic"),
+            ("models.bem3d.cells", "32"),
+            ("scene.surface.rms_height", "1 um"),
+            ("scene.surface.hurst", "0.8"),
+            ("scene.surface.side", "1 mm"),
+            ("sampling.seed", "1"),
+            ("scene.mean_pressure", "1 MPa, 2 MPa"),
+            ("scene.bodies", "rigid, 210 GPa 0.3"),
+            ("scene.surface.kind", "self_affine"),
+            ("scene.models", "bem3d"),
+        ];
+        let scene = given(&keys).scene(None).unwrap();
+        let mut reversed = keys;
+        reversed.reverse();
+        assert_eq!(scene.text, given(&reversed).scene(None).unwrap().text);
+        assert!(scene.text.contains("mean_gap = true"), "{}", scene.text);
+        assert_eq!(drawn_surface(&given(&keys)).unwrap().name, "surface.gwy");
+    }
+
+    #[test]
+    fn a_mistake_names_its_key() {
+        let mistake =
+            given(&[("scene.models", "bem3d"), ("effects.hardness", "2 nm")]).scene(None).unwrap_err();
+        assert_eq!(mistake.key.as_deref(), Some("effects.hardness"));
+        assert!(mistake.message.contains("2 nm"), "{mistake:?}");
+        let none =
+            given(&[("scene.models", "bem3d"), ("scene.surface.kind", "file")]).scene(None).unwrap_err();
+        assert!(none.message.contains("no file is open"), "{none:?}");
+    }
+}

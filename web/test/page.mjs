@@ -47,7 +47,7 @@ const settled = async (page) => {
   const ready = page.waitForFunction(() => !document.querySelector("#ui-solve").disabled, null, { timeout: 60_000 });
   await ready.catch(async (error) => { throw new Error(`${await status(page)}; ${await page.textContent("#ui-mistake")}; ${page.url()}`, { cause: error }); });
 };
-const told = (page, pattern, timeout = 300_000) => page.waitForFunction((text) => new RegExp(text).test(document.querySelector("#ui-status").textContent), pattern, { timeout });
+const told = (page, pattern, timeout = 90_000) => page.waitForFunction((text) => new RegExp(text).test(document.querySelector("#ui-status").textContent), pattern, { timeout });
 const put = async (page, key, text) => {
   const place = page.locator(`[id="ui-key-${key}"]`);
   if (!(await place.isVisible())) await page.evaluate((id) => { for (let at = document.getElementById(id)?.closest("details"); at; at = at.parentElement.closest("details")) at.open = true; }, `ui-key-${key}`);

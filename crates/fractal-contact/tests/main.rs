@@ -6,6 +6,7 @@ mod accuracy;
 mod answers;
 mod bad_scenes;
 mod friction;
+mod in_memory;
 mod limits;
 mod measured_maps;
 mod own_models;

@@ -13,6 +13,7 @@ use contact_model::Stop;
 use contact_model::units::ascii;
 use runs::cluster::{ShardPlan, ShardReport, ShardRun, run_shard};
 use runs::{Checkpoint, Failure, Header, Job, JobRun, Progress, Shard, Store, Threads, run_stored};
+use std::cell::Cell;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use web_time::Instant;
@@ -116,7 +117,12 @@ pub fn run_in_memory(
     progress.begin(&title(scene), jobs.iter().map(Job::cost).sum());
     let mut results = Vec::with_capacity(jobs.len());
     for (unit, job) in units.iter().zip(&jobs) {
+        let known = Cell::new(0);
         let newest = |result: &ModelResult| {
+            // A job that is complete is kept once more.
+            if result.states.len() == known.replace(result.states.len()) {
+                return Ok(());
+            }
             let states = &result.states[result.states.len().saturating_sub(1)..];
             let unit = SolvedUnit { model: unit.numerics(scene).name(), surface: unit.surface, states };
             let states = StateTable::new(scene, vec![unit], title(scene));

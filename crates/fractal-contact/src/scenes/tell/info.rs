@@ -250,8 +250,8 @@ fn each(file: SurfaceFile<'_>) -> Result<String> {
 /// has a line for each. Lengths are in metres, and then `unit` is "m"; values with another or no unit are given
 /// as in the file. `heights` is false where the file says that the channel does not hold heights (but a phase
 /// or a current). `rms` is about the mean, `undefined` is a share of the points, and a value that neither the
-/// file nor `declared` gives is null. A channel that cannot be read beside others, or that gives no map, is
-/// `{"error"}`; `notes` are remarks on the file.
+/// file nor `declared` gives is null. A channel that cannot be read beside others, or that gives no map, has `error`, and
+/// its name and its cells as far as they are known; `notes` are remarks on the file.
 ///
 /// # Errors
 /// [`Error::Surface`] for errors of the file.
@@ -266,10 +266,23 @@ fn channels_json(open: &Open<'_>, declared: &ReadOptions, preprocessing: &Prepro
     let file = open(declared)?;
     let mut channels = Vec::with_capacity(file.len());
     for (number, scan) in file.scans().enumerate() {
-        let found = scan.and_then(|scan| channel(&scan, number, (open, declared), preprocessing));
+        let mut described = serde_json::json!({});
+        let found = scan.and_then(|scan| {
+            described = of_metadata(scan.metadata());
+            channel(&scan, number, (open, declared), preprocessing)
+        });
         channels.push(match found {
             Ok(channel) => channel,
-            Err(error) if error.problem().is_some() => serde_json::json!({ "error": error.to_string() }),
+            Err(error) if error.problem().is_some() => {
+                // What it is called is known, although its heights are not.
+                let mut channel = serde_json::json!({ "error": error.to_string() });
+                for name in ["name", "columns", "rows", "heights"] {
+                    if let Some(known) = described.get(name) {
+                        channel[name] = known.clone();
+                    }
+                }
+                channel
+            }
             Err(error) => return Err(error.into()),
         });
     }
