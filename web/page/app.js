@@ -144,14 +144,14 @@ const plain = (text) => text.replace(/\$`([^`]*)`\$/g, "$1").replace(/\[([^\]]*)
 const row = (keys, path) => {
   const about = element("p", { className: "about" });
   const made = element("div", { className: "key" });
-  const show = (key) => about.replaceChildren(...marked(key.about), key.takes ? "; " : "", ...marked(key.takes));
+  const show = (key) => about.replaceChildren(...marked(key.about.replace(/\.$/, "")), key.takes ? "; " : "", ...marked(key.takes));
   if (keys.length === 1) {
     const [key] = keys;
     const input = control(path(key), key.takes, key.default || "");
     made.append(element("label", { htmlFor: input.id, textContent: said(key.name) }), input);
     show(key);
   } else {
-    const name = keys.map((key) => said(key.name)).join(" or ");
+    const name = keys.some((key) => LOADS.includes(key.name)) ? "load" : keys.some((key) => key.name === "bodies") ? "material" : keys.map((key) => said(key.name)).join(" or ");
     const chosen = () => keys.find((key) => values.has(path(key))) || keys[0];
     const pair = element("div", { className: "pair" });
     const select = element("select", { id: `ui-which-${path(keys[0])}` }, ...keys.map((key) => element("option", { value: key.name, textContent: said(key.name) })));
