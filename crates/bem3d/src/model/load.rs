@@ -111,8 +111,7 @@ impl PreparedSurface {
         if force < capacity * (1.0 - CAPACITY_ROUNDING) {
             return Ok(());
         }
-        // Every force that is refused lies beyond the end of the range that the error names.
-        let max = self.nondimensional.force(PI * capacity * (1.0 - 2.0 * CAPACITY_ROUNDING))?;
+        let max = self.nondimensional.force(PI * capacity)?;
         let name = "force (at the end of the range every cell is at the hardness)".into();
         Err(Error::OutOfRange { name, value: asked, min: 0.0, max })
     }
