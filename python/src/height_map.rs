@@ -127,7 +127,7 @@ impl PyHeightMap {
         RustMap::with_undefined(self.map.cells(), self.map.size(), heights).ok()
     }
 
-    /// What this makes of the map, with what it makes of the points that were filled.
+    /// The map after a step such as a turn. The step is applied to the points that were filled as well.
     fn made<E>(&self, of: impl Fn(&RustMap) -> Result<RustMap, E>) -> Result<Self, E> {
         // A part may have been filled as a whole: then it is not known any more.
         let holes = self.holes().and_then(|holes| of(&holes).ok());

@@ -110,10 +110,11 @@ const set = (key, text) => {
 
 // ---- The form -----------------------------------------------------------------------------------------------------------------------------
 
-// Markdown of the book as plain text with code.
+// Markdown of the book without formulas and links.
+const unlinked = (text) => text.replace(/\$`([^`]*)`\$/g, "$1").replace(/\[([^\]]*)\]\([^)]*\)/g, "$1");
+// The same as text with code.
 const marked = (text) => {
-  const plain = text.replace(/\$`([^`]*)`\$/g, "$1").replace(/\[([^\]]*)\]\([^)]*\)/g, "$1");
-  return plain.split("`").map((part, i) => (i % 2 ? element("code", { textContent: part }) : part));
+  return unlinked(text).split("`").map((part, i) => (i % 2 ? element("code", { textContent: part }) : part));
 };
 // The words that a key takes, where it takes nothing else.
 const words = (takes) => {
@@ -138,7 +139,7 @@ const control = (path, takes, fallback, label) => {
   input.addEventListener("change", () => set(path, input.value));
   return input;
 };
-const plain = (text) => text.replace(/\$`([^`]*)`\$/g, "$1").replace(/\[([^\]]*)\]\([^)]*\)/g, "$1").replaceAll("`", "");
+const plain = (text) => unlinked(text).replaceAll("`", "");
 
 // The row of a key, or of several of which one is given.
 const row = (keys, path) => {

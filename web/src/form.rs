@@ -1,10 +1,10 @@
 //! The form of the page: every key of a scene, and what the models can do.
 
 use contact_model::{FIELDS, Output};
-use fractal_contact::scenes::{EFFECT_KEYS, Numerics, page_parts, scene_keys};
+use fractal_contact::scenes::{EFFECT_KEYS, Numerics, scene_keys};
 use serde_json::{Value, json};
 
-/// The form as JSON: `{"version", "keys", "effects", "outputs", "models", "palette"}`.
+/// The form as JSON: `{"version", "keys", "effects", "outputs", "models"}`.
 pub(crate) fn form() -> Value {
     let keys = scene_keys().into_iter().map(|key| {
         json!({
@@ -27,18 +27,13 @@ pub(crate) fn form() -> Value {
             "effects": abilities.effects.iter().map(|effect| effect.key()).collect::<Vec<_>>(),
             "periodic": abilities.boundaries.contains(&contact_model::Boundary::Periodic),
             "outputs": abilities.outputs.iter().map(|output| output.name()).collect::<Vec<_>>(),
-            "surfaces": abilities.surfaces.iter().map(|surface| surface.name()).collect::<Vec<_>>(),
-            "needsEffect": abilities.needs_effect,
         })
     });
-    let [style, _, palette] = page_parts();
     json!({
         "version": env!("CARGO_PKG_VERSION"),
         "keys": keys.collect::<Vec<_>>(),
         "effects": effects.collect::<Vec<_>>(),
         "outputs": outputs.collect::<Vec<_>>(),
         "models": models.collect::<Vec<_>>(),
-        "style": style,
-        "palette": palette,
     })
 }

@@ -89,13 +89,17 @@ impl Given {
     pub fn scene(&self, file: Option<&OpenedFile>) -> Result<SceneFile, Mistake> {
         let mut question = Question::default();
         self.set(&mut question, |key| !key.starts_with("outputs."))?;
+        let mut profile = false;
         if let Some(AskedSurface::File(asked)) = &mut question.surface {
             let file =
                 file.ok_or_else(|| Mistake::new("no file is open: drop one above, or choose an example"))?;
             (asked.path, asked.content) = (Some(file.name.clone().into()), Some(Arc::clone(&file.bytes)));
+            // A file that cannot be read is refused with the scene.
+            let scan = surface_io::Scan::from_bytes(&file.name, &file.bytes, &asked.declared);
+            profile = scan.is_ok_and(|scan| scan.metadata().profile);
         }
         if question.models.iter().any(|model| matches!(model, Numerics::Bem3d(_))) {
-            question.request_usual_outputs(false);
+            question.request_usual_outputs(profile);
         }
         self.set(&mut question, |key| key.starts_with("outputs."))?;
         Ok(SceneFile::of(question, Path::new("scene.toml"))?)

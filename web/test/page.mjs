@@ -95,12 +95,13 @@ const compare = async (page, name, boundary) => {
   assert.equal(here.length, there.length);
   for (let i = 0; i < here.length; i++) {
     const number = (row, column) => Number(row[column]);
+    assert.equal(here[i].contact_cells, there[i].contact_cells, `${name}, ${boundary}: number of cells in contact`);
     const names = ["area", "stiffness", ...(boundary === "free" ? ["approach"] : ["mean_gap"])];
     for (const column of names) {
       const [a, b] = [number(here[i], column), number(there[i], column)];
       assert(Number.isFinite(a) && Number.isFinite(b), `${name}, ${boundary}: ${column} = ${here[i][column]} and ${there[i][column]}`);
       const difference = Math.abs(a - b) / Math.abs(b);
-      const certified = (row) => ["duality_gap", "penetration", "undecided_area", "stiffness_error"].map((of) => Math.abs(number(row, of)) || 0).reduce((x, y) => x + y, 0);
+      const certified = (row) => ["duality_gap", "penetration", "stiffness_error"].map((of) => Math.abs(number(row, of)) || 0).reduce((x, y) => x + y, 0);
       largest.push([difference, `${path.basename(name)}, ${boundary}, load ${i}: ${column}`]);
       assert(difference <= 1e-12 + certified(here[i]) + certified(there[i]), `${name}, ${boundary}: ${column} differs by ${difference}`);
     }
@@ -141,7 +142,8 @@ test("numbers are those of the program", async () => {
     }
   }
   largest.sort(([a], [b]) => b - a);
-  largest.slice(0, 6).forEach(([difference, what]) => console.log(`  ${difference.toExponential(1)}  ${what}`));
+  const areas = largest.filter(([, what]) => what.endsWith(": area"));
+  [...largest.slice(0, 6), areas[0]].forEach(([difference, what]) => console.log(`  ${difference.toExponential(1)}  ${what}`));
 });
 
 test("nothing is requested but the page's own files", async () => {

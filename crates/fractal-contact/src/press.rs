@@ -29,6 +29,13 @@ struct Lacking {
     instead: Option<(String, String)>,
 }
 
+impl Lacking {
+    fn new(flag: &str, example: &str, why: &str, instead: Option<(&str, &str)>) -> Self {
+        let instead = instead.map(|(flag, why)| (flag.to_owned(), why.to_owned()));
+        Self { flag: flag.to_owned(), example: example.to_owned(), why: why.to_owned(), instead }
+    }
+}
+
 /// The scene of a map, at the place where it will stand.
 ///
 /// # Errors
@@ -86,14 +93,8 @@ fn scene_of(asked: &PressArguments, at: &Path, profile: bool, words: &str) -> Re
 fn lacking(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
     let mut lacking = lacking_of_map(asked, map);
     lacking.extend(lacking_of_bodies(asked));
-    let of_load = |flag: &str, example: &str, why: &str, instead: Option<(&str, &str)>| Lacking {
-        flag: flag.to_owned(),
-        example: example.to_owned(),
-        why: why.to_owned(),
-        instead: instead.map(|(flag, why)| (flag.to_owned(), why.to_owned())),
-    };
     if asked.load().is_none() {
-        lacking.push(of_load(
+        lacking.push(Lacking::new(
             "--pressure",
             "1 MPa,10 MPa",
             "mean pressure over the area of the map, one value or several",
@@ -105,9 +106,14 @@ fn lacking(asked: &PressArguments, map: &Metadata) -> Vec<Lacking> {
         match held_by_friction(asked) {
             Some(held) => {
                 let [half, held] = [0.5 * held, held].map(|force| ascii(&amount(force, "N")));
-                lacking.push(of_load("--tangential-force", &half, &format!("{why}: below {held}"), None));
+                lacking.push(Lacking::new(
+                    "--tangential-force",
+                    &half,
+                    &format!("{why}: below {held}"),
+                    None,
+                ));
             }
-            None => lacking.push(of_load("--tangential-force", "10 mN", why, None)),
+            None => lacking.push(Lacking::new("--tangential-force", "10 mN", why, None)),
         }
     }
     lacking
@@ -138,12 +144,7 @@ fn lacking_of_bodies(asked: &PressArguments) -> Vec<Lacking> {
     let bodies = asked.problem.value("bodies");
     let mut lacking = Vec::new();
     let mut add = |flag: &str, example: &str, why: &str, instead: Option<(&str, &str)>| {
-        lacking.push(Lacking {
-            flag: flag.to_owned(),
-            example: example.to_owned(),
-            why: why.to_owned(),
-            instead: instead.map(|(flag, why)| (flag.to_owned(), why.to_owned())),
-        });
+        lacking.push(Lacking::new(flag, example, why, instead));
     };
     if asked.has_friction() && bodies.is_none() {
         let why = "Young's modulus and Poisson's ratio of both bodies, which friction needs";

@@ -302,7 +302,7 @@ fn notes_under(loads: &str) -> String {
     outcome.notes.join("\n")
 }
 
-/// A mean gap of zero has no ratio to the smallest one of a theory, and is told with it in metres all the same.
+/// The refusal of a mean gap of zero gives the smallest mean gap in metres, although no ratio of the two exists.
 #[test]
 fn a_mean_gap_of_zero_is_refused_in_metres() {
     let told = |gap: &str| notes_under(&format!("mean_gap = [\"6 um\", \"{gap}\"]"));
@@ -319,7 +319,7 @@ fn a_mean_gap_of_zero_is_refused_in_metres() {
     assert_eq!(smallest(&one, "1 nm"), smallest(&zero, "0 m"), "{one}");
 }
 
-/// A pressure beyond a theory is told in the number of the theory and in pascals.
+/// The refusal of a pressure beyond a theory gives it both in the theory's dimensionless number and in pascals.
 #[test]
 fn a_pressure_beyond_a_theory_is_told_in_pascals() {
     let notes = notes_under("mean_pressure = [\"1 kPa\", \"1 TPa\"]");

@@ -87,7 +87,7 @@ pub fn run(
 /// A run in memory.
 #[derive(Debug, Clone, Default)]
 pub struct RunInMemory {
-    /// What came of it; its files have no directory.
+    /// The outcome, as of a run in a folder. The paths of its files are their names alone.
     pub outcome: SceneOutcome,
     /// The bytes of its files by their names: tables, pictures, fields and the report.
     pub files: BTreeMap<String, Arc<[u8]>>,

@@ -10,7 +10,7 @@ pub struct MissingKey {
     pub key: &'static str,
     /// An example of its value.
     pub example: &'static str,
-    /// What it says, and why it is needed.
+    /// The meaning of the key, and the reason why this map needs it.
     pub why: String,
     /// A key that can be given in its place, and what that says.
     pub instead: Option<(&'static str, &'static str)>,

@@ -167,7 +167,7 @@ fn statistics_of(scan: &Scan, found: &Preprocessed) -> MapStatisticsTables {
     MapStatisticsTables::new(measured, system(scan.metadata()))
 }
 
-/// What a file in memory holds, for a page on which it is dropped.
+/// The description of a file in memory: its channels, the keys that it lacks, and its map.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct DescribedFile {

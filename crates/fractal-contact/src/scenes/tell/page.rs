@@ -60,8 +60,8 @@ impl ReportPage {
         page.into_string()
     }
 
-    /// What stands below the title, for a page with another frame. That page brings the
-    /// [`page_parts`].
+    /// The content of the page below its title, as HTML. Another page can show it in its own frame, with the style, the
+    /// script and the palettes of [`page_parts`].
     pub fn content(&self) -> String {
         html! { (self.head) (self.sections()) }.into_string()
     }
@@ -80,8 +80,8 @@ fn palette() -> String {
     STANDARD.encode(Palette::ALL.map(Palette::colours).as_flattened().as_flattened())
 }
 
-/// What a page of one's own needs to show reports in its frame: the style, the script that makes fields readable, and
-/// the palettes, which that script reads from an element with the identifier `palette`.
+/// The style, the script and the palettes of reports, for another page that shows a report in its own frame. The script
+/// makes fields readable, and reads the palettes from an element with the identifier `palette`.
 pub fn page_parts() -> [String; 3] {
     [STYLE.to_owned(), SCRIPT.to_owned(), palette()]
 }
