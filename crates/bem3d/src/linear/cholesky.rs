@@ -28,6 +28,7 @@ impl Factor {
         None
     }
 
+    #[allow(clippy::unnecessary_wraps)] // The signature is that of the factor with `faer`.
     pub fn until(_: &NormalTable, _: &CellSet, _: Stop<'_>) -> Result<Option<Self>, Interrupted> {
         Ok(None)
     }
