@@ -14,6 +14,7 @@ use fractal_contact::{
 };
 use pyo3::prelude::*;
 use pyo3::types::{IntoPyDict as _, PyBytes, PyTuple};
+use std::sync::atomic::{AtomicU32, Ordering};
 use std::sync::{Mutex, PoisonError};
 
 /// The loads that a call may name one of.
@@ -126,6 +127,8 @@ pub struct PyContact {
     long: bool,
     /// Whether its memory is looked at before each solve.
     large: bool,
+    /// Number of answers.
+    answers: AtomicU32,
     /// Whether the surface yields, so that the order of loads matters.
     yields: bool,
     best: Mutex<Option<Py<PyContactState>>>,
@@ -153,7 +156,7 @@ impl PyContact {
         let inner = Exclusive::new(Inner { contact, highest: None, largest: LargestPull::default() });
         let yields = scene.effects.hardness != Hardness::Off;
         let (best, last) = (Mutex::new(None), Mutex::new(None));
-        Self { inner, origin, long, large, yields, best, last }
+        Self { inner, origin, long, large, answers: AtomicU32::new(0), yields, best, last }
     }
 
     fn normalisation(&self) -> &RustNormalisation {
@@ -189,6 +192,8 @@ impl PyContact {
         }
         if self.large {
             memory::check_solve(py, contact, |contact| contact.required_memory(load))?;
+        } else if self.answers.fetch_add(1, Ordering::Relaxed) % memory::MANY == memory::MANY - 1 {
+            memory::check_many(py)?;
         }
         let mut work = |stop: &(dyn Fn() -> bool + Sync)| match asked {
             Asked::Load(load) => contact.solve_until(*load, &|| stop()),

@@ -16,6 +16,16 @@ pub fn check(py: Python<'_>, what: impl Into<Cow<'static, str>>, bytes: f64) -> 
 /// would take a part of its time.
 const SMALL: f64 = 2e6;
 
+/// Number of small answers after which the memory is looked at: their caller may keep them all.
+pub const MANY: u32 = 1024;
+/// Bytes that are to be there then. So many answers without fields take a tenth of it.
+const RESERVE: f64 = 32e6;
+
+/// `MemoryError` where many small answers have left next to nothing.
+pub fn check_many(py: Python<'_>) -> PyResult<()> {
+    check(py, "1024 further states", RESERVE)
+}
+
 /// Whether contacts that need this much at least are looked at before each solve.
 pub fn is_large(least: Option<&RequiredMemory>) -> bool {
     least.is_some_and(|least| least.bytes > SMALL)

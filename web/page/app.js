@@ -101,6 +101,7 @@ const fragment = () => {
 };
 
 const set = (key, text) => {
+  suited.delete(key);
   if ((values.get(key) || "") === text) return;
   if (text.trim()) values.set(key, text);
   else values.delete(key);
@@ -122,7 +123,12 @@ const words = (takes) => {
   const rest = takes.replace(/`[^`]*`/g, "").replace(/\bor\b|[,\s]/g, "");
   return codes.length > 1 && !rest ? codes : null;
 };
-const said = (name) => name.replaceAll("_", " ");
+// The name of a key, as "scene.hardness" or without its table, in words.
+const SAID = { "scene.hardness": "hardness, for a note alone", force_bar: "dimensionless force", models: "model" };
+const said = (path) => {
+  const name = path.split(".").at(-1);
+  return SAID[path] || SAID[name] || name.replaceAll("_", " ");
+};
 
 const control = (path, takes, fallback, label) => {
   const options = words(takes);
@@ -145,23 +151,28 @@ const plain = (text) => unlinked(text).replaceAll("`", "");
 const row = (keys, path) => {
   const about = element("p", { className: "about" });
   const made = element("div", { className: "key" });
-  const show = (key) => about.replaceChildren(...marked(key.about.replace(/\.$/, "")), key.takes ? "; " : "", ...marked(key.takes));
+  const show = (key) => {
+    const sentence = `${key.about.replace(/\.$/, "")}.`;
+    // What a list of words offers is seen.
+    about.replaceChildren(...marked(sentence[0].toUpperCase() + sentence.slice(1)), ...(key.takes && !words(key.takes) ? [" Takes: ", ...marked(key.takes), "."] : []));
+  };
   if (keys.length === 1) {
     const [key] = keys;
     const input = control(path(key), key.takes, key.default || "");
-    made.append(element("label", { htmlFor: input.id, textContent: said(key.name) }), input);
+    made.append(element("label", { htmlFor: input.id, textContent: said(path(key)) }), input);
     show(key);
   } else {
-    const name = keys.some((key) => LOADS.includes(key.name)) ? "load" : keys.some((key) => key.name === "bodies") ? "material" : keys.map((key) => said(key.name)).join(" or ");
+    const name = keys.some((key) => LOADS.includes(key.name)) ? "load" : keys.some((key) => key.name === "bodies") ? "material" : keys.map((key) => said(path(key))).join(" or ");
     const chosen = () => keys.find((key) => values.has(path(key))) || keys[0];
     const pair = element("div", { className: "pair" });
-    const select = element("select", { id: `ui-which-${path(keys[0])}` }, ...keys.map((key) => element("option", { value: key.name, textContent: said(key.name) })));
+    const select = element("select", { id: `ui-which-${path(keys[0])}` }, ...keys.map((key) => element("option", { value: key.name, textContent: said(path(key)) })));
     select.setAttribute("aria-label", `which of ${name}`);
-    const input = (key) => control(path(key), key.takes, key.default || "", said(key.name));
+    const input = (key) => control(path(key), key.takes, key.default || "", said(path(key)));
     select.value = chosen().name;
     pair.append(select, input(chosen()));
     select.addEventListener("change", () => {
       const key = keys.find((one) => one.name === select.value);
+      keys.forEach((one) => suited.delete(path(one)));
       keys.filter((one) => one !== key).forEach((one) => values.delete(path(one)));
       pair.replaceChildren(select, input(key));
       show(key);
@@ -287,7 +298,7 @@ const showMistake = (mistake) => {
   if (!mistake) return;
   const { key } = mistake;
   const [message, help] = [mistake.message, mistake.help && !/\[\[scene\.path\]\]/.test(mistake.help) ? mistake.help : mistake.help && "press “Prescribe a path of loads”, and give a tangential force in its second step"].map((text) => text && cut(text, 600));
-  box.replaceChildren(element("strong", { textContent: key ? said(key.split(".").at(-1)) : "This cannot be answered yet" }),
+  box.replaceChildren(element("strong", { textContent: key ? said(key) : "This cannot be answered yet" }),
     element("pre", { textContent: message }), ...(help ? [element("p", {}, ...marked(`${help}.`))] : []));
   if (key && !rows.has(key)) {
     const remove = element("button", { type: "button", textContent: `Remove ${cut(key)}` });
@@ -317,10 +328,23 @@ const showPage = (container, html) => {
 const showSurface = ({ channels, missing = [], page, error, mistake }) => {
   document.querySelectorAll(".key.missing").forEach((line) => line.classList.remove("missing"));
   const of = isFile() ? channels?.channels || [] : [];
-  const choice = of.length > 1 ? [element("div", { className: "key" }, element("label", { htmlFor: "ui-channel", textContent: "channel" }),
-    Object.assign(element("select", { id: "ui-channel" }, element("option", { value: "", textContent: "choose one" }),
-      ...of.map((channel, i) => element("option", { value: String(i), textContent: `${i}: ${channel.name || "without a name"}${channel.heights === false ? " (no heights)" : ""}${channel.columns ? `, ${channel.columns} x ${channel.rows}` : ""}` }))),
-      { value: values.get("scene.surface.channel") || "", onchange: (event) => set("scene.surface.channel", event.target.value) }))] : [];
+  // Channels of one name, such as both directions of a scan, are told apart by those of their details that differ.
+  const details = (channel) => (channel.details || "").split(", ");
+  const differing = (channel) => {
+    const others = of.filter((other) => other !== channel && other.name === channel.name);
+    return details(channel).filter((part) => others.some((other) => !details(other).includes(part)));
+  };
+  const option = (channel, i) => {
+    const text = [`${i}: ${channel.name || "without a name"}`, ...differing(channel), ...(channel.heights === false ? ["no heights"] : []), `${channel.columns} x ${channel.rows}`];
+    return element("option", { value: String(i), textContent: text.join(", "), disabled: channel.heights === false });
+  };
+  const choice = [];
+  if (of.length > 1) {
+    const select = element("select", { id: "ui-channel" }, element("option", { value: "", textContent: "choose one" }), ...of.map(option));
+    select.value = values.get("scene.surface.channel") || "";
+    select.addEventListener("change", () => set("scene.surface.channel", select.value));
+    choice.push(element("div", { className: "key" }, element("label", { htmlFor: select.id, textContent: "channel" }), select));
+  }
   $("ui-channels").replaceChildren(...choice);
   rows.get("scene.surface.channel")?.toggleAttribute("hidden", choice.length > 0);
   const more = missing.flatMap(({ key, instead }) => [key, ...(instead ? [instead[0]] : [])]).map((key) => `scene.surface.${key}`);
@@ -337,10 +361,10 @@ const showSurface = ({ channels, missing = [], page, error, mistake }) => {
     place.hidden = false;
     place.textContent = `${why}, such as ${example}${instead ? `; or ${said(instead[0])}: ${instead[1]}` : ""}`;
   }
-  const details = $("ui-surface");
-  details.hidden = !page && !error;
-  if (!page) details.open = true;
-  const container = details.querySelector("div");
+  const shown = $("ui-surface");
+  shown.hidden = !page && !error;
+  if (!page) shown.open = true;
+  const container = shown.querySelector("div");
   if (page) showPage(container, page);
   else container.replaceChildren(element("p", { className: "verdict warned", textContent: error || "" }));
   return missing.length === 0 && Boolean(page) && !mistake;
@@ -505,11 +529,11 @@ const solve = async () => {
       const place = element("div");
       states.append(place);
       showPage(place, value);
-    } else if (what === "progress" && value.job) {
-      const [drawn, pictures] = value.pictures;
-      $("ui-progress").value = (value.done + 0.1 * (pictures ? drawn / pictures : 0)) / (value.all + 0.1);
-      const residual = value.residual ? `, residual ${value.residual[0].toExponential(1)} of ${value.residual[1].toExponential(0)}` : "";
-      tell(value.done < value.all ? `State ${value.done + 1} of ${value.all}${residual}.` : `All ${value.all} states are solved; pictures are being drawn.`);
+    } else if (what === "progress" && value.words) {
+      // Without a value the bar says that something is under way whose share is not known.
+      if (value.share === null) $("ui-progress").removeAttribute("value");
+      else $("ui-progress").value = value.share;
+      tell(`${value.words[0].toUpperCase()}${value.words.slice(1)}.`);
     }
   };
   try {
@@ -558,38 +582,60 @@ const stop = async () => {
 
 const OF_ONE_FILE = ["channel", "unit", "lateral_unit", "size", "cell", "height_scale", "format", "missing", "skip_lines", "decimal", "axes", "border", "crop", "cells",
   "rows", "undefined", "fill"];
-const open = async (name, bytes) => {
+const open = async (name, bytes, asAddressed = false) => {
   // What was said of another file is not true of this one; what the address says is of the first.
   if (file && file.name !== name) OF_ONE_FILE.forEach((key) => values.delete(`scene.surface.${key}`));
+  if (!asAddressed) suit(values.get("example"));
   file = { name, bytes };
   surfaceIsOld = true;
   needed.clear();
   $("ui-file-name").textContent = `${name}, ${bytes.byteLength} bytes`;
   values.set("scene.surface.kind", "file");
   values.set("scene.surface.path", name);
-  EXAMPLES.find(([known]) => known === values.get("example"))?.[2].forEach(([key, text]) => { if (!values.has(key)) values.set(key, text); });
   draw();
   fragment();
   await solver.ask("open", name, bytes);
   await refresh(true);
 };
-// Maps of the repository, with the keys that they need.
-const EXAMPLES = [["polished.x3p", "polished steel, generated", []], ["optical.x3p", "an optical map with undefined points", [["scene.surface.undefined", "no_contact"]]],
-  ["uncd-afm.001", "a diamond film by AFM", [["scene.surface.channel", "0"]]]];
-const openExample = async (name) => {
+// Maps of the repository, with the keys that they need and bodies and loads that suit them.
+const EXAMPLES = [["polished.x3p", "polished steel, generated", [["effects.boundary", "periodic"]]],
+  ["optical.x3p", "an optical map with undefined points", [["scene.surface.undefined", "no_contact"]]],
+  ["uncd-afm.001", "a diamond film by AFM", [["scene.surface.channel", "0"], ["scene.surface.filter_across", "6 nm"], ["scene.bodies", "900 GPa 0.1, 900 GPa 0.1"],
+    ["scene.mean_pressure", "1 GPa, 3 GPa, 10 GPa"]]]];
+const exampleKeys = (name) => EXAMPLES.find(([known]) => known === name)?.[2] || [];
+const suited = new Set(); // Keys that the page has set, and nobody since.
+// Keys that nobody has set become what suits the example, or a file of one's own.
+const suit = (name) => {
+  const own = exampleKeys(name);
+  for (const key of suited) {
+    const suits = [...own, ...BEGIN].find(([of]) => of === key)?.[1];
+    if (suits) values.set(key, suits);
+    else values.delete(key);
+  }
+  // An absent load or material has another one in its place.
+  for (const [key, text] of own) {
+    if (values.has(key) || !/^(scene\.surface|effects)\./.test(key)) continue;
+    values.set(key, text);
+    suited.add(key);
+  }
+};
+const openExample = async (name, asAddressed = false) => {
   if (!EXAMPLES.some(([known]) => known === name)) throw new Error(`there is no example ${cut(name)}: drop a file`);
   const stored = document.querySelector(`[data-example="${CSS.escape(name)}"]`)?.textContent;
   const fetched = stored ? null : await fetch(`examples/${name}`);
   if (fetched && !fetched.ok) throw new Error(`the example ${name} is not there: ${fetched.status}`);
   values.set("example", name);
-  await open(name, stored ? decode(stored).buffer : await fetched.arrayBuffer());
+  await open(name, stored ? decode(stored).buffer : await fetched.arrayBuffer(), asAddressed);
 };
 
 // Steps of a path beyond a hundred are for a scene in a file.
 const isStep = (key) => !key.startsWith("scene.path.") || /^scene\.path\.\d{1,2}\./.test(key);
 const begin = async () => {
   const given = [...new URLSearchParams(location.hash.slice(1))];
-  (given.length ? given : BEGIN).filter(([key]) => isStep(key)).forEach(([key, text]) => values.set(key, text));
+  // An address without a question may name an example.
+  const isWhole = given.some(([key]) => key !== "example");
+  [...(isWhole ? [] : BEGIN), ...given].filter(([key]) => isStep(key)).forEach(([key, text]) => values.set(key, text));
+  if (!isWhole) BEGIN.forEach(([key]) => suited.add(key));
   if (!values.has("scene.models")) values.set("scene.models", "bem3d");
   if (!values.has("scene.surface.kind")) values.set("scene.surface.kind", "file");
   await solver.start();
@@ -603,7 +649,7 @@ const begin = async () => {
     $("ui-examples").append(button);
   }
   const example = values.get("example");
-  if (example) await openExample(example).catch((error) => tell(error.message));
+  if (example) await openExample(example, isWhole).catch((error) => tell(error.message));
   else await refresh(true);
   document.documentElement.dataset.ready = "true";
 };

@@ -116,9 +116,10 @@ impl Session {
     pub fn solve(&self, keys: &str) -> Solved {
         let solve = || -> Result<_, Mistake> {
             let scene = Given::parse(keys)?.scene(self.file.as_ref())?;
-            let scene = scene.with_grid_in_memory(&solved::Told, &contact_model::never)?;
+            let told = solved::Told::default();
+            let scene = scene.with_grid_in_memory(&told, &contact_model::never)?;
             let plan = Plan::new(&scene)?;
-            let run = run_in_memory(&scene, &plan, &solved::Told, &contact_model::never, &tell_state)?;
+            let run = run_in_memory(&scene, &plan, &told, &contact_model::never, &tell_state)?;
             Ok((scene, run))
         };
         Solved::new(solve())

@@ -3,23 +3,36 @@
 use crate::question::Mistake;
 use crate::tell_progress;
 use fractal_contact::scenes::{RunInMemory, SceneFile};
-use runs::{JobInHand, Progress};
+use runs::{JobInHand, Progress, Work};
 use serde_json::json;
+use std::sync::{Mutex, PoisonError};
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// Tells the page the progress.
-pub(crate) struct Told;
+#[derive(Default)]
+pub(crate) struct Told(Mutex<Work>);
+
+impl Told {
+    fn with(&self, change: impl FnOnce(&mut Work)) -> f64 {
+        // A panic ends the worker, so nobody meets a poisoned lock.
+        let mut work = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        change(&mut work);
+        work.cost() / work.total().max(1.0)
+    }
+}
 
 impl Progress for Told {
-    fn begin(&self, _: &str, _: u64) {}
+    fn begin(&self, _: &str, total: u64) {
+        self.with(|work| *work = Work::new(total));
+    }
 
-    fn advance(&self, _: u64, _: bool) {}
+    fn advance(&self, cost: u64, reused: bool) {
+        self.with(|work| work.add(cost, reused));
+    }
 
     fn states(&self, job: &JobInHand<'_>) {
-        let JobInHand { name, done, all, pictures, residual, .. } = *job;
-        let drawn = [pictures.drawn, pictures.all];
-        let told = json!({ "job": name, "done": done, "all": all, "pictures": drawn, "residual": residual });
-        tell_progress(&told.to_string());
+        let share = (!job.on_coarser_grids).then(|| self.with(|work| work.set(job)));
+        tell_progress(&json!({ "share": share, "words": job.words() }).to_string());
     }
 
     fn end(&self) {}

@@ -174,6 +174,11 @@ test("the page works without a network after it was loaded once", async () => {
 
 test("one file opens from a folder", async () => {
   const page = await opened(pathToFileURL(path.join(dist, "fractal-contact.html")).href);
+  // Its policy knows its own scripts, and no other.
+  assert.equal(await page.evaluate(() => {
+    document.head.append(Object.assign(document.createElement("script"), { textContent: "window.foreign = true" }));
+    return window.foreign;
+  }), undefined);
   await example(page);
   await solved(page);
   assert(page.requests.every((url) => /^(file|blob|data):/.test(url)), page.requests.join("\n"));
@@ -222,6 +227,15 @@ test("friction is asked by a path", async () => {
   await put(page, "scene.path.1.tangential_force", "50 mN");
   await solved(page);
   assert.match(await page.textContent("#ui-report"), /stick/);
+  await page.context().close();
+});
+
+test("a profile is solved as a line contact", async () => {
+  const page = await opened(served);
+  await page.setInputFiles("#ui-file", path.join(data, "scenes/stylus-line.txt"));
+  await settled(page);
+  await put(page, "effects.boundary", "periodic");
+  await compare(page, path.join(data, "scenes/stylus-line.txt"), "periodic");
   await page.context().close();
 });
 

@@ -11,10 +11,11 @@ const FLAGS: &str = "-C target-feature=+simd128";
 const TARGET: &str = "wasm32-unknown-unknown";
 /// Maps of the folder `data` that the page offers. The page of one file has the first one alone.
 const EXAMPLES: [&str; 3] = ["scenes/polished.x3p", "measured/optical.x3p", "measured/uncd-afm.001"];
-/// No address but the page's own folder is reached, and the page of one file reaches none.
+/// The served page reaches its own folder and nothing else.
 const SERVED: &str = "default-src 'none'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self'; style-src 'self' 'unsafe-inline'; \
     img-src data: blob:; connect-src 'self'; base-uri 'none'; form-action 'none'";
-const ALONE: &str = "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; style-src 'unsafe-inline'; \
+/// The page of one file reaches nothing. It runs the scripts whose hashes stand in the place of `@HASHES@`, and no other.
+const ALONE: &str = "default-src 'none'; script-src @HASHES@ 'wasm-unsafe-eval'; worker-src blob:; style-src 'unsafe-inline'; \
     img-src data: blob:; connect-src 'none'; base-uri 'none'; form-action 'none'";
 
 /// Builds the page.
@@ -160,20 +161,27 @@ impl BrowserPage {
             file_name(EXAMPLES[0]),
             base64(&self.examples[0])
         );
+        let [report, app] = [&self.report, &self.app].map(|text| script(text));
+        let policy = ALONE.replace("@HASHES@", &format!("{} {}", script_hash(&report), script_hash(&app)));
         let scripts = [
             Self::stored("palette", &self.palette),
             Self::stored("ui-wasm", &base64(&self.wasm)),
             example,
             format!("<script id=\"ui-worker\" type=\"text/plain\">{}</script>\n", script(&self.worker)),
-            format!("<script>{}</script>\n<script>{}</script>", script(&self.report), script(&self.app)),
+            format!("<script>{report}</script>\n<script>{app}</script>"),
         ];
-        self.html(ALONE, &format!("<style>{}</style>", self.style), &scripts.concat())
+        self.html(&policy, &format!("<style>{}</style>", self.style), &scripts.concat())
     }
 }
 
 /// The name of an example without its folder.
 fn file_name(example: &str) -> &str {
     example.rsplit('/').next().unwrap_or(example)
+}
+
+/// A script of the page as a security policy names it.
+fn script_hash(script: &str) -> String {
+    format!("'sha256-{}'", base64(&hmac_sha256::Hash::hash(script.as_bytes())))
 }
 
 fn base64(bytes: &[u8]) -> String {

@@ -46,6 +46,26 @@ pub struct JobInHand<'a> {
     pub pictures: Pictures,
     /// Largest residual of the state that is being solved, and the tolerance that ends its solve.
     pub residual: Option<(f64, f64)>,
+    /// Whether its loads are being solved on the coarser grids that tell the error of the grid.
+    pub on_coarser_grids: bool,
+}
+
+impl JobInHand<'_> {
+    /// What is being done, in words.
+    pub fn words(&self) -> String {
+        let Self { name, done, all, pictures, residual, on_coarser_grids, .. } = self;
+        let residual =
+            residual.map(|(residual, tolerance)| format!("residual {residual:.0e} of {tolerance:.0e}"));
+        match residual {
+            _ if done >= all && pictures.drawn < pictures.all => {
+                format!("picture {} of {} of {name}", pictures.drawn + 1, pictures.all)
+            }
+            _ if done >= all => format!("files of {name}"),
+            None => format!("{done} of {all} states of {name}"),
+            Some(residual) if *on_coarser_grids => format!("coarser grids, {residual}, {name}"),
+            Some(residual) => format!("state {} of {all}, {residual}, {name}", done + 1),
+        }
+    }
 }
 
 /// The pictures of a job.
@@ -66,6 +86,7 @@ pub struct StatesInHand<'a> {
     all: usize,
     done: Cell<usize>,
     pictures: Cell<Pictures>,
+    on_coarser_grids: Cell<bool>,
     progress: &'a dyn Progress,
     stop: Stop<'a>,
 }
@@ -78,7 +99,8 @@ impl<'a> StatesInHand<'a> {
         progress: &'a dyn Progress,
         stop: Stop<'a>,
     ) -> Self {
-        Self { name, cost, all, done: Cell::new(done), pictures: Cell::default(), progress, stop }
+        let (pictures, on_coarser_grids) = (Cell::default(), Cell::default());
+        Self { name, cost, all, done: Cell::new(done), pictures, on_coarser_grids, progress, stop }
     }
 
     /// The same job with as many pictures, whose drawing takes `cost` of the cost of the whole job.
@@ -86,6 +108,11 @@ impl<'a> StatesInHand<'a> {
     pub fn with_pictures(self, all: usize, cost: u64) -> Self {
         self.pictures.set(Pictures { cost, drawn: 0, all });
         self
+    }
+
+    /// From now on its loads are solved on coarser grids, or on its own.
+    pub fn on_coarser_grids(&self, are: bool) {
+        self.on_coarser_grids.set(are);
     }
 
     /// Reports that `done` states are solved.
@@ -114,8 +141,9 @@ impl<'a> StatesInHand<'a> {
 
     fn tell(&self, residual: Option<(f64, f64)>) {
         let Self { name, cost, all, done, pictures, .. } = self;
-        let (done, pictures) = (done.get(), pictures.get());
-        self.progress.states(&JobInHand { name, cost: *cost, done, all: *all, pictures, residual });
+        let (done, pictures, on_coarser_grids) = (done.get(), pictures.get(), self.on_coarser_grids.get());
+        let job = JobInHand { name, cost: *cost, done, all: *all, pictures, residual, on_coarser_grids };
+        self.progress.states(&job);
     }
 }
 

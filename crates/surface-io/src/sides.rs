@@ -56,7 +56,7 @@ impl fmt::Display for Sides {
 impl FromStr for Sides {
     type Err = QuantityError;
 
-    /// Reads one quantity, or two with an `x` between, such as `4 mm x 3 mm`.
+    /// Reads one quantity, or two with an `x` or a comma between, such as `4 mm x 3 mm` or `4 mm, 3 mm`.
     ///
     /// # Errors
     /// As [`Quantity::from_str`].
@@ -65,7 +65,11 @@ impl FromStr for Sides {
         let beside = |c: Option<char>| c.is_some_and(|c| !c.is_alphabetic());
         let between = text.char_indices().find(|&(at, c)| {
             let after = text[at + c.len_utf8()..].chars().next();
-            c == '×' || (c == 'x' && beside(text[..at].chars().next_back()) && beside(after))
+            let before = text[..at].chars().next_back();
+            // A decimal comma has digits on both sides.
+            let is_list =
+                || before.is_some_and(char::is_alphabetic) || after.is_some_and(char::is_whitespace);
+            c == '×' || (c == 'x' && beside(before) && beside(after)) || (c == ',' && is_list())
         });
         match between {
             Some((at, c)) => Ok(Self::Two([text[..at].parse()?, text[at + c.len_utf8()..].parse()?])),
@@ -81,12 +85,25 @@ mod tests {
     #[test]
     fn one_or_two_sides_are_read() {
         let two = |x: &str, y: &str| Ok(Sides::Two([x.parse().unwrap(), y.parse().unwrap()]));
-        for text in ["4 mm x 3 um", "4mm×3um", " 4 mm  x  3 um "] {
+        for text in ["4 mm x 3 um", "4mm×3um", " 4 mm  x  3 um ", "4 mm, 3 um", "4mm,3um"] {
             assert_eq!(text.parse(), two("4 mm", "3 um"), "{text}");
         }
-        assert_eq!("4x3".parse(), two("4", "3"));
+        for text in ["4x3", "4, 3"] {
+            assert_eq!(text.parse(), two("4", "3"));
+        }
         assert_eq!("1e-3".parse(), Ok(Sides::One("1e-3".parse().unwrap())));
-        for text in ["", "x", "4 x", "4 mm x 3 mm x 2 mm", "4 px", "x 4", "0,5 um x 1 um"] {
+        for text in [
+            "",
+            "x",
+            "4 x",
+            "4 mm x 3 mm x 2 mm",
+            "4 px",
+            "x 4",
+            "0,5 um x 1 um",
+            "0,5",
+            "4,3",
+            "4 mm, 3 mm, 2 mm",
+        ] {
             assert!(text.parse::<Sides>().is_err(), "{text}");
         }
         assert_eq!("4 mm x 3 um".parse::<Sides>().unwrap().to_string(), "4 mm x 3 um");

@@ -72,16 +72,19 @@ impl<'a> Entries<'a> {
         read(Entries::named(name, document.get_ref()))
     }
 
-    /// Reads the value of one key as a flag has it: a value of TOML such as `512` or `["1 N", "2 N"]`, or else a
-    /// text such as `0.5 um`.
+    /// Reads the value of one key as a flag has it: a value of TOML such as `512` or `["1 N", "2 N"]`, a number such as
+    /// `.5` or `5.`, which TOML does not know, or else a text such as `0.5 um`.
     pub fn of_word<T>(
         path: &str,
         word: &str,
         read: impl FnOnce(&Entry<'_>) -> ReadResult<T>,
     ) -> ReadResult<T> {
         let text = || Spanned::new(0..word.len(), DeValue::String(Cow::Borrowed(word)));
-        let value = match DeValue::parse(word) {
-            Ok(value) if !value.get_ref().is_datetime() => value,
+        let number = word.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+        let number = number.map(|number| format!("{number:?}"));
+        let value = match (DeValue::parse(word), &number) {
+            (Ok(value), _) if !value.get_ref().is_datetime() => value,
+            (_, Some(number)) => DeValue::parse(number).unwrap_or_else(|_| text()),
             _ => text(),
         };
         // A flag has no place in a text.
@@ -587,7 +590,8 @@ impl<'a> Entry<'a> {
     /// One length > 0, or two in a list.
     pub fn lengths(&self, system: System) -> ReadResult<LengthOrPair> {
         // As on the command line: "2 mm x 1 mm".
-        let both = self.as_word().map(|text| (text.contains(" x "), text.parse::<Sides>()));
+        let both =
+            self.as_word().map(|text| (text.contains(" x ") || text.contains(','), text.parse::<Sides>()));
         let dimension = if system == System::Si { Dimension::LENGTH } else { Dimension::NONE };
         let wrong = |reason: surface_io::QuantityError| {
             self.diagnostic(format!("`{}`: {reason}", self.path))

@@ -691,8 +691,13 @@ fn read_pair(entry: &Entry<'_>, system: System) -> ReadResult<Pair> {
     } else {
         let values = entry.list();
         let [first, second] = &values[..] else {
+            let found = if entry.is_list() {
+                format!("`bodies` names {}", values.len())
+            } else {
+                format!("`bodies` = {}: this is no body", entry.shown())
+            };
             return Err(entry
-                .diagnostic(format!("`bodies` names {}", values.len()))
+                .diagnostic(found)
                 .with_help("two: `bodies = [\"rigid\", { young = \"70 GPa\", poisson = 0.33 }]`"));
         };
         Pair { first: read_body(first, system)?, second: read_body(second, system)? }

@@ -48,6 +48,11 @@ impl<'a> Keeper<'a> {
         Self { store, checkpoint, progress, name, told_states, last, took, kept: 0, told: false }
     }
 
+    /// From now on the loads are solved on coarser grids, or on the grid itself: the progress says so.
+    pub fn on_coarser_grids(&self, are: bool) {
+        self.told_states.on_coarser_grids(are);
+    }
+
     /// Restores a contact to the point at which it was interrupted, and leaves the states before that in the
     /// result. A checkpoint that cannot be used is reported: a path then begins anew, and loads that do not
     /// depend on each other keep their states.

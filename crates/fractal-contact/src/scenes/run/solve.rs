@@ -189,7 +189,9 @@ impl ContactInHand<'_, '_> {
         }
         let mut comparison = None;
         if let (true, Ok(loads)) = (compares, &loads) {
+            self.keeper.on_coarser_grids(true);
             comparison = self.coarser_grids(loads)?;
+            self.keeper.on_coarser_grids(false);
             if comparison.is_none() {
                 return Ok(());
             }

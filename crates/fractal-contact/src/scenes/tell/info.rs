@@ -276,7 +276,7 @@ fn channels_json(open: &Open<'_>, declared: &ReadOptions, preprocessing: &Prepro
             Err(error) if error.problem().is_some() => {
                 // What it is called is known, although its heights are not.
                 let mut channel = serde_json::json!({ "error": error.to_string() });
-                for name in ["name", "columns", "rows", "heights"] {
+                for name in ["name", "details", "columns", "rows", "heights"] {
                     if let Some(known) = described.get(name) {
                         channel[name] = known.clone();
                     }
@@ -348,6 +348,7 @@ fn of_metadata(metadata: &Metadata) -> serde_json::Value {
     };
     serde_json::json!({
         "name": metadata.name,
+        "details": metadata.details,
         "columns": metadata.columns,
         "rows": metadata.rows,
         "profile": metadata.profile,
