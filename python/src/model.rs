@@ -11,7 +11,7 @@ use fractal_contact::models::{MODELS, ModelRecord, abilities};
 use fractal_contact::scenes::Numerics;
 use fractal_contact::{
     Abilities, ContactModel, Effects, Equivalent, Error, Outputs, Paths, PreparedContact, RequiredMemory,
-    Scene as RustScene, Source,
+    Scene as RustScene, Source, Stop,
 };
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -41,6 +41,15 @@ impl ContactModel for SharedModel {
 
     fn prepare(&self, scene: &RustScene, seed: u64) -> fractal_contact::Result<Box<dyn PreparedContact>> {
         self.0.prepare(scene, seed)
+    }
+
+    fn prepare_until(
+        &self,
+        scene: &RustScene,
+        seed: u64,
+        stop: Stop<'_>,
+    ) -> fractal_contact::Result<Box<dyn PreparedContact>> {
+        self.0.prepare_until(scene, seed, stop)
     }
 
     fn least_memory(&self, scene: &RustScene) -> Option<RequiredMemory> {

@@ -123,6 +123,16 @@ pub trait ContactModel: Send + Sync {
     /// elastic answer), [`crate::Error::Domain`] or [`crate::Error::Shape`] for numbers that make no sense.
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>>;
 
+    /// As [`ContactModel::prepare`], unless the stop ends it: for models that draw large surfaces. By default the stop is
+    /// not asked.
+    ///
+    /// # Errors
+    /// [`crate::Error::Stopped`] by the stop; as [`ContactModel::prepare`].
+    fn prepare_until(&self, scene: &Scene, seed: u64, stop: Stop<'_>) -> Result<Box<dyn PreparedContact>> {
+        let _ = stop;
+        self.prepare(scene, seed)
+    }
+
     /// The least memory that [`ContactModel::prepare`] and a light load need, the surface that is drawn
     /// included; `None` where that does not grow with a grid. Callers compare it with the memory that is
     /// available; a model does not ask the system.
@@ -152,6 +162,10 @@ impl<M: ContactModel + ?Sized> ContactModel for &M {
 
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
         (**self).prepare(scene, seed)
+    }
+
+    fn prepare_until(&self, scene: &Scene, seed: u64, stop: Stop<'_>) -> Result<Box<dyn PreparedContact>> {
+        (**self).prepare_until(scene, seed, stop)
     }
 
     fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {

@@ -5,7 +5,7 @@
 //! negative my count from the end, so that the waves of one mx are contiguous. The operator of a solver, with
 //! its fused products, has a transform of its own.
 
-use crate::parallel::{for_each, threads_for};
+use crate::parallel::{for_each_until, threads_for};
 use crate::plan::Precision;
 use realfft::{ComplexToReal, RealToComplex};
 use rustfft::Fft;
@@ -117,26 +117,39 @@ impl InverseTransform {
     /// assert!(values.iter().zip([1.0, 0.0, -1.0, 0.0]).all(|(a, b): (&f64, f64)| (a - b).abs() < 1e-15));
     /// ```
     pub fn of(&self, filled: usize, fill: impl Fn(usize, &mut [Complex64]) + Sync) -> Vec<f64> {
+        self.of_until(filled, fill, &|| false).unwrap_or_default()
+    }
+
+    /// As [`InverseTransform::of`]; `None` where `stops`, which is asked between columns and between rows, says to stop.
+    pub fn of_until(
+        &self,
+        filled: usize,
+        fill: impl Fn(usize, &mut [Complex64]) + Sync,
+        stops: &dyn Fn() -> bool,
+    ) -> Option<Vec<f64>> {
         let zero = Complex64::new(0.0, 0.0);
         let threads = threads_for(self.columns * self.rows);
         let mut scratch = vec![vec![zero; self.along_y.get_inplace_scratch_len()]; threads];
         let mut waves = vec![Vec::new(); filled];
-        for_each(&mut scratch, waves.iter_mut().enumerate(), |scratch, (mx, column)| {
-            column.resize(self.rows, zero);
-            fill(mx, column);
-            self.along_y.process_with_scratch(column, scratch);
-        });
+        let all =
+            for_each_until(&mut scratch, waves.iter_mut().enumerate(), stops, |scratch, (mx, column)| {
+                column.resize(self.rows, zero);
+                fill(mx, column);
+                self.along_y.process_with_scratch(column, scratch);
+            });
+        if !all {
+            return None;
+        }
         let gathered = vec![zero; ROWS * (self.columns / 2 + 1)];
         let mut scratch = vec![RowScratch { gathered, fft: self.along_x.make_scratch_vec() }; threads];
         let mut values = vec![0.0; self.columns * self.rows];
-        for_each(
+        let all = for_each_until(
             &mut scratch,
             values.chunks_mut(ROWS * self.columns).enumerate(),
-            |scratch, (block, rows)| {
-                self.rows(&waves, block, rows, scratch);
-            },
+            stops,
+            |scratch, (block, rows)| self.rows(&waves, block, rows, scratch),
         );
-        values
+        all.then_some(values)
     }
 
     /// Transforms block number `block` of rows along x.

@@ -98,5 +98,5 @@ pub use measure::{
 };
 pub use memory::{height_map_memory, wave_map_memory};
 pub use phases::{line_phase, map_phase};
-pub use surface::{height_map, line};
+pub use surface::{height_map, height_map_until, line};
 pub use waves::{Anisotropy, TwinSpectrum, WaveGenerator};

@@ -4,7 +4,7 @@ use crate::memory;
 use crate::phases::{Stream, Turns};
 use crate::spectrum::MapSpectrum;
 use crate::turn::Circle;
-use contact_model::{Cells, HeightMap, Result, SelfAffine, Size};
+use contact_model::{Cells, HeightMap, Interrupted, Result, SelfAffine, Size, Stop, never};
 use numerics::fourier::{Complex64, InverseTransform};
 use std::fmt;
 use std::sync::Arc;
@@ -79,11 +79,20 @@ impl MapGenerator {
     /// [`contact_model::Error::OutOfMemory`] when the map does not fit in memory,
     /// [`contact_model::Error::Domain`] when its heights overflow.
     pub fn map(&self, seed: u64) -> Result<HeightMap> {
+        self.map_until(seed, &never)
+    }
+
+    /// As [`MapGenerator::map`], unless the stop ends it, which is asked between the rows of the transform.
+    ///
+    /// # Errors
+    /// [`contact_model::Error::Stopped`] by the stop; as [`MapGenerator::map`].
+    pub fn map_until(&self, seed: u64, stop: Stop<'_>) -> Result<HeightMap> {
         // Half of the waves, as complex numbers, beside the map.
         let waves = 16.0 * self.cells.rows as f64 * self.spectrum.columns() as f64;
         memory::check(self.cells, waves + self.cells.map_bytes())?;
         let fill = |mx: usize, column: &mut [Complex64]| self.fill_column(seed, mx as u64, column);
-        HeightMap::new(self.cells, self.size, self.transform.of(self.spectrum.columns(), fill))
+        let heights = self.transform.of_until(self.spectrum.columns(), fill, &|| stop.stops());
+        HeightMap::new(self.cells, self.size, heights.ok_or_else(|| Interrupted.without_state())?)
     }
 
     /// Writes `B exp(i phi)` of all waves (mx, my); index my, negative ones from the end.

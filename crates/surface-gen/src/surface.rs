@@ -1,8 +1,8 @@
 //! From the description of a surface to its samples.
 
 use crate::indenter::{axisymmetric, flat, flat_circle, sine};
-use crate::{self_affine_line, self_affine_map};
-use contact_model::{Cells, Error, HeightMap, Line, Result, Surface};
+use crate::{MapGenerator, self_affine_line};
+use contact_model::{Cells, Error, HeightMap, Line, Result, Stop, Surface, never};
 use std::sync::Arc;
 
 /// Name in errors of this crate.
@@ -32,10 +32,23 @@ const NAME: &str = "surface-gen";
 /// # Ok::<(), contact_model::Error>(())
 /// ```
 pub fn height_map(surface: &Surface, cells: impl Into<Cells>, seed: u64) -> Result<Arc<HeightMap>> {
+    height_map_until(surface, cells, seed, &never)
+}
+
+/// As [`height_map`], unless the stop ends it: drawing a random surface of 4097 x 4097 cells takes seconds.
+///
+/// # Errors
+/// [`Error::Stopped`] by the stop; as [`height_map`].
+pub fn height_map_until(
+    surface: &Surface,
+    cells: impl Into<Cells>,
+    seed: u64,
+    stop: Stop<'_>,
+) -> Result<Arc<HeightMap>> {
     surface.validate()?;
     let (cells, size) = (cells.into(), surface.size());
     let map = match *surface {
-        Surface::SelfAffine(ref s) => self_affine_map(s, cells, seed)?,
+        Surface::SelfAffine(ref s) => MapGenerator::new(s, cells)?.map_until(seed, stop)?,
         Surface::Heights(ref map) | Surface::Profile(ref map) if map.cells() == cells => {
             return Ok(Arc::clone(map));
         }

@@ -15,8 +15,8 @@ use crate::parts::{Part, Recorder};
 use crate::response::normal::{self, Responding, StiffnessRequest};
 use crate::tuning::Tuning;
 use contact_model::{
-    Cells, ContactState, Error, Interrupted, Load, NormalLoad, Normalisation, PathMemory, PreparedContact,
-    RequiredMemory, Result, Scene, Status, Step, Stop, Watch,
+    Cells, ContactState, Error, HeightMap, Interrupted, Load, NormalLoad, Normalisation, PathMemory,
+    PreparedContact, RequiredMemory, Result, Scene, Status, Step, Stop, Watch,
 };
 use std::borrow::Cow;
 use std::cell::Cell;
@@ -35,15 +35,14 @@ pub struct PreparedBem3d {
 }
 
 impl PreparedBem3d {
-    /// The surface of a scene.
+    /// The surface of a scene with these heights.
     pub(super) fn new(
         model: &Bem3d,
         scene: &Scene,
-        seed: u64,
-        tuning: &Tuning,
-        recorder: &Recorder,
+        map: &HeightMap,
+        numerics: (&Tuning, &Recorder),
     ) -> Result<Self> {
-        let mut surface = PreparedSurface::new(model, scene, seed, tuning, recorder)?;
+        let mut surface = PreparedSurface::of_map(*model, scene, map, numerics)?;
         let adhesion = AdhesivePath::of(&mut surface, scene.effects.adhesion)?;
         let place = PlaceInLoads { loads: LoadSequence::Single, solved: None, time: 0.0 };
         Ok(Self { surface, adhesion, place })

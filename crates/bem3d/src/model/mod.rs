@@ -28,8 +28,8 @@ use crate::tuning::Tuning;
 use contact::PreparedBem3d;
 use contact_model::{
     Abilities, Adhesion, AdhesionLaw, Boundary, ContactModel, Directions, Effect, Effects, Error, Friction,
-    LoadKind, NotCombined, Output, Paths, PreparedContact, RequiredMemory, Result, Scene, Source,
-    SurfaceKind,
+    LoadKind, NotCombined, Output, Paths, PreparedContact, RequiredMemory, Result, Scene, Source, Stop,
+    SurfaceKind, never,
 };
 use options::NAME;
 
@@ -114,7 +114,11 @@ impl ContactModel for Bem3d {
     }
 
     fn prepare(&self, scene: &Scene, seed: u64) -> Result<Box<dyn PreparedContact>> {
-        self.prepare_with(scene, seed, &Tuning::DEFAULT, &Recorder::default())
+        self.prepare_until(scene, seed, &never)
+    }
+
+    fn prepare_until(&self, scene: &Scene, seed: u64, stop: Stop<'_>) -> Result<Box<dyn PreparedContact>> {
+        Ok(Box::new(self.prepared(scene, seed, (&Tuning::DEFAULT, &Recorder::default()), stop)?))
     }
 
     fn least_memory(&self, scene: &Scene) -> Option<RequiredMemory> {
@@ -132,7 +136,7 @@ impl Bem3d {
         tuning: &Tuning,
         recorder: &Recorder,
     ) -> Result<Box<dyn PreparedContact>> {
-        Ok(Box::new(self.prepared(scene, seed, tuning, recorder)?))
+        Ok(Box::new(self.prepared(scene, seed, (tuning, recorder), &never)?))
     }
 
     /// A surface ready for single loads and for paths.
@@ -140,15 +144,16 @@ impl Bem3d {
         &self,
         scene: &Scene,
         seed: u64,
-        tuning: &Tuning,
-        recorder: &Recorder,
+        (tuning, recorder): (&Tuning, &Recorder),
+        stop: Stop<'_>,
     ) -> Result<PreparedBem3d> {
         self.abilities().refuse(NAME, scene)?;
         profile::check(scene)?;
         if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
             return Err(Error::domain("tolerance", self.tolerance, "a number in (0, 1)"));
         }
-        PreparedBem3d::new(self, scene, seed, tuning, recorder)
+        let map = self.heights_until(scene, seed, stop)?;
+        PreparedBem3d::new(self, scene, &map, (tuning, recorder))
     }
 }
 

@@ -13,7 +13,7 @@ use crate::response::normal::magnification;
 use crate::tuning::Tuning;
 use contact_model::{
     Boundary, Effects, Error, Hardness, HeightMap, Interrupted, Nondimensionalisation, Normalisation,
-    Outputs, Result, Scene, Size, Stop, Surface,
+    Outputs, Result, Scene, Size, Stop, Surface, never,
 };
 use std::f64::consts::PI;
 use std::sync::{Arc, OnceLock};
@@ -73,10 +73,18 @@ impl Bem3d {
     /// # Errors
     /// [`Error::Unsupported`] for a line; errors of generating a surface.
     pub fn heights(&self, scene: &Scene, seed: u64) -> Result<Arc<HeightMap>> {
+        self.heights_until(scene, seed, &never)
+    }
+
+    /// As [`Bem3d::heights`], unless the stop ends it.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] by the stop; as [`Bem3d::heights`].
+    pub fn heights_until(&self, scene: &Scene, seed: u64, stop: Stop<'_>) -> Result<Arc<HeightMap>> {
         match &scene.surface {
             Surface::Heights(map) | Surface::Profile(map) => Ok(Arc::clone(map)),
             Surface::Line { .. } => Err(Error::unsupported(NAME, "a line (it needs a map)")),
-            surface => surface_gen::height_map(surface, self.grid(surface.size()), seed),
+            surface => surface_gen::height_map_until(surface, self.grid(surface.size()), seed, stop),
         }
     }
 }
@@ -110,18 +118,6 @@ fn upper_bound(scene: &Scene, nondimensional: Nondimensionalisation) -> Result<O
 }
 
 impl PreparedSurface {
-    /// The surface of a scene.
-    pub(super) fn new(
-        options: &Bem3d,
-        scene: &Scene,
-        seed: u64,
-        tuning: &Tuning,
-        recorder: &Recorder,
-    ) -> Result<Self> {
-        let map = options.heights(scene, seed)?;
-        Self::of_map(*options, scene, &map, (tuning, recorder))
-    }
-
     /// The surface of a scene with these heights.
     pub(super) fn of_map(
         options: Bem3d,

@@ -106,7 +106,7 @@ impl GridComparison {
         stop: Stop<'_>,
     ) -> Result<Self> {
         let boundary = scene.effects.boundary;
-        let rms_slope = rms_slope(scene, &*solved_map(scene, numerics, seed)?)?;
+        let rms_slope = rms_slope(scene, &*solved_map(scene, numerics, seed, stop)?)?;
         let Cells { columns, rows } = cells(scene, numerics);
         let longer = columns.max(rows);
         if longer.div_ceil(4) < FEWEST_CELLS {
@@ -143,7 +143,7 @@ pub(crate) fn on_grid(scene: &SceneFile, numerics: &Numerics, longer: usize) -> 
 /// The numbers of one model, the first of a scene, under loads; `None` where it does not answer one.
 fn solve(scene: &SceneFile, seed: u64, loads: &[Load], stop: Stop<'_>) -> Result<Vec<Option<GridNumbers>>> {
     let numerics = &scene.models[0];
-    let slope = rms_slope(scene, &*solved_map(scene, numerics, seed)?)?;
+    let slope = rms_slope(scene, &*solved_map(scene, numerics, seed, stop)?)?;
     let mut found = vec![None; loads.len()];
     let mut outputs = scene.requested.outputs;
     for &output in Output::ALL.iter().filter(|output| output.is_field() || **output == Output::ContactPatches)
@@ -151,7 +151,7 @@ fn solve(scene: &SceneFile, seed: u64, loads: &[Load], stop: Stop<'_>) -> Result
         outputs.ask(output, false);
     }
     let physics = Scene { outputs, ..scene.scene(numerics, seed)? };
-    let mut contact = numerics.model().prepare(&physics, seed)?;
+    let mut contact = numerics.model().prepare_until(&physics, seed, stop)?;
     let normalisation = contact.normalisation();
     contact.sweep(loads, stop, &mut |i, state| {
         found[i] = state.ok().map(|state| numbers(&state, &normalisation, slope));
@@ -163,12 +163,17 @@ fn solve(scene: &SceneFile, seed: u64, loads: &[Load], stop: Stop<'_>) -> Result
 /// The heights that a model with cells solves.
 ///
 /// # Errors
-/// [`Error::Unsupported`] for a model without cells; what drawing a surface refuses.
-pub(crate) fn solved_map(scene: &SceneFile, numerics: &Numerics, seed: u64) -> Result<Arc<HeightMap>> {
+/// [`Error::Unsupported`] for a model without cells; [`Error::Stopped`]; what drawing a surface refuses.
+pub(crate) fn solved_map(
+    scene: &SceneFile,
+    numerics: &Numerics,
+    seed: u64,
+    stop: Stop<'_>,
+) -> Result<Arc<HeightMap>> {
     let Some(elements) = numerics.boundary_elements() else {
         return Err(Error::unsupported(numerics.name(), "heights on cells: it has none"));
     };
-    elements.heights(&scene.scene(numerics, seed)?, seed)
+    elements.heights_until(&scene.scene(numerics, seed)?, seed, stop)
 }
 
 fn rms_slope(scene: &SceneFile, map: &HeightMap) -> Result<f64> {

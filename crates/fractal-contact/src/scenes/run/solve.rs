@@ -11,7 +11,7 @@ use crate::scenes::run::{
 };
 use contact_model::{
     Cells, ContactState, Field, FieldQuantity, LargestPull, Load, NormalLoad, Normalisation, PreparedContact,
-    Status, Stop,
+    Status, Stop, never,
 };
 use std::borrow::Cow;
 use std::path::Path;
@@ -49,8 +49,14 @@ impl ModelOnSurface {
         let seed = scene.seed(self.surface);
         let physics = scene.scene(numerics, seed).map_err(runs::Error::model(what()))?;
         let before = result.seconds;
-        let prepared = lines.model(numerics, &physics.surface).prepare(&physics, seed);
-        let mut contact = prepared.map_err(runs::Error::model(what()))?;
+        let mut contact = match lines.model(numerics, &physics.surface).prepare_until(&physics, seed, stop) {
+            // The surface was being drawn.
+            Err(contact_model::Error::Stopped { .. }) => {
+                result.complete = false;
+                return Ok(result);
+            }
+            prepared => prepared.map_err(runs::Error::model(what()))?,
+        };
         let is_path = matches!(scene.request, LoadRequest::Path(_));
         // Loads that were complete have lost a file; those of a contact without a memory are solved each by
         // itself.
@@ -139,7 +145,7 @@ impl ModelOnSurface {
             return Ok(None);
         }
         let draw = || {
-            let map = solved_map(scene, numerics, scene.seed(self.surface))?;
+            let map = solved_map(scene, numerics, scene.seed(self.surface), &never)?;
             let known = |h: &f64| if h.is_finite() { *h } else { f64::NAN };
             Field::new(map.cells(), map.size(), map.heights().iter().map(known).collect())
         };

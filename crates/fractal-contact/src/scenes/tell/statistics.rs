@@ -4,7 +4,7 @@
 use crate::scenes::plan::solved_map;
 use crate::scenes::read::{Result, SceneFile, System, multiple, short};
 use contact_model::units::{ascii, number, rounded};
-use contact_model::{Boundary, HeightMap};
+use contact_model::{Boundary, HeightMap, never};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 use surface_statistics::{
@@ -325,7 +325,7 @@ impl MapStatisticsTables {
     pub fn of_scene(scene: &SceneFile) -> Result<Self> {
         let of_file = scene.surface.given_map().map(Arc::clone);
         let with_cells = scene.models.iter().find(|model| model.boundary_elements().is_some());
-        let drawn = with_cells.map(|model| solved_map(scene, model, scene.seed(0))).transpose();
+        let drawn = with_cells.map(|model| solved_map(scene, model, scene.seed(0), &never)).transpose();
         let Some(map) = drawn.map_err(runs::Error::model("statistics"))?.or(of_file) else {
             let refused = contact_model::Error::unsupported(
                 "statistics",
