@@ -3,17 +3,17 @@
 use crate::question::Mistake;
 use crate::tell_progress;
 use fractal_contact::scenes::{RunInMemory, SceneFile};
-use runs::{JobInHand, Progress, Work};
+use runs::{JobInHand, Progress, WorkDone};
 use serde_json::json;
 use std::sync::{Mutex, PoisonError};
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// Tells the page the progress.
 #[derive(Default)]
-pub(crate) struct Told(Mutex<Work>);
+pub(crate) struct Told(Mutex<WorkDone>);
 
 impl Told {
-    fn with(&self, change: impl FnOnce(&mut Work)) -> f64 {
+    fn with(&self, change: impl FnOnce(&mut WorkDone)) -> f64 {
         // A panic ends the worker, so nobody meets a poisoned lock.
         let mut work = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         change(&mut work);
@@ -23,7 +23,7 @@ impl Told {
 
 impl Progress for Told {
     fn begin(&self, _: &str, total: u64) {
-        self.with(|work| *work = Work::new(total));
+        self.with(|work| *work = WorkDone::new(total));
     }
 
     fn advance(&self, cost: u64, reused: bool) {

@@ -22,6 +22,8 @@ pub struct Effects {
     pub friction: Friction,
     /// Time dependence of the material.
     pub rheology: Rheology,
+    /// A layer on the surface of one body.
+    pub layer: Option<Layer>,
 }
 
 impl Effects {
@@ -46,6 +48,9 @@ impl Effects {
         if let Friction::Slip { law, .. } = self.friction {
             law.validate()?;
         }
+        if let Some(layer) = self.layer {
+            layer.validate()?;
+        }
         self.rheology.validate()
     }
 
@@ -59,7 +64,7 @@ impl Effects {
     /// ```
     pub fn named(&self) -> impl Iterator<Item = Effect> + use<> {
         // All fields, so that a new effect is not forgotten.
-        let Self { boundary: _, hardness, adhesion, friction, rheology } = self;
+        let Self { boundary: _, hardness, adhesion, friction, rheology, layer } = self;
         let hardness = match hardness {
             Hardness::Off => None,
             Hardness::Limit { .. } => Some(Effect::Hardness),
@@ -88,7 +93,8 @@ impl Effects {
             Rheology::StandardSolid { .. } => Some(Effect::StandardSolid),
             Rheology::Prony(_) => Some(Effect::PronySeries),
         };
-        [hardness, adhesion, strength, limit, friction, rheology].into_iter().flatten()
+        let layer = layer.map(|_| Effect::Layer);
+        [hardness, adhesion, strength, limit, friction, rheology, layer].into_iter().flatten()
     }
 }
 
@@ -142,12 +148,13 @@ impl Effect {
     pub fn with(self, other: Self) -> Option<Effects> {
         let (mut both, next) = (self.example(), other.example());
         // All fields, so that a new effect is not forgotten.
-        let Effects { boundary: _, hardness, adhesion, friction, rheology } = next;
+        let Effects { boundary: _, hardness, adhesion, friction, rheology, layer } = next;
         match (other.key(), self.key() == other.key()) {
             ("hardness", false) => both.hardness = hardness,
             ("adhesion", false) => both.adhesion = adhesion,
             ("friction", false) => both.friction = friction,
             ("rheology", false) => both.rheology = rheology,
+            ("layer", false) => both.layer = layer,
             ("friction", true) => both.friction = both.friction.joined(friction),
             _ => return None,
         }
@@ -194,7 +201,95 @@ effects! {
     /// [`Rheology::Prony`].
     PronySeries "rheology" "the rheology of a Prony series"
         { rheology: Rheology::Prony(PronySeries::new(&[Relaxing { weight: 1.0, time: 1.0 }]).unwrap_or_default()) },
+    /// [`Layer`].
+    Layer "layer" "a layer on a base"
+        { layer: Some(Layer { thickness: 0.1, young: 2.0, poisson: 0.0, base: LayerBase::Rigid }) },
 }
+
+/// An elastic layer that one of the bodies bears, such as a coating, or that lies on a rigid base.
+///
+/// [`crate::Scene::contact_modulus`] is then E* of the layer's material and of the body that presses on it, both as
+/// half-spaces: `1/E* = (1 - nu^2)/E` of the layer, and the same of the other body where it is not rigid.
+///
+/// ```
+/// use contact_model::{Layer, LayerBase};
+/// let base = LayerBase::HalfSpace { young: 210e9, poisson: 0.3 };
+/// let coating = Layer { thickness: 2e-6, young: 400e9, poisson: 0.2, base };
+/// assert!((coating.modulus() - 400e9 / 0.96).abs() < 1.0);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Layer {
+    /// Its thickness > 0 (a length).
+    pub thickness: f64,
+    /// Its Young's modulus > 0 (force per length squared).
+    pub young: f64,
+    /// Its Poisson's ratio, in [0, 1/2].
+    pub poisson: f64,
+    /// What bears it.
+    pub base: LayerBase,
+}
+
+/// What bears a layer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub enum LayerBase {
+    /// An elastic half-space that the layer is bonded to.
+    HalfSpace {
+        /// Its Young's modulus > 0.
+        young: f64,
+        /// Its Poisson's ratio, in [0, 1/2].
+        poisson: f64,
+    },
+    /// A rigid base that the layer is bonded to.
+    Rigid,
+    /// A rigid base on which the layer slips without friction.
+    Slipping,
+}
+
+impl Layer {
+    /// `E/(1 - nu^2)` of its material.
+    pub fn modulus(&self) -> f64 {
+        self.young / (1.0 - self.poisson * self.poisson)
+    }
+
+    /// The shear modulus of its material over that of the base: 0 on a rigid base.
+    pub fn shear_ratio(&self) -> f64 {
+        match self.base {
+            LayerBase::HalfSpace { young, poisson } => {
+                (self.young / young) * ((1.0 + poisson) / (1.0 + self.poisson))
+            }
+            LayerBase::Rigid | LayerBase::Slipping => 0.0,
+        }
+    }
+
+    /// Checks its numbers.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] with the first that makes no sense.
+    pub fn validate(&self) -> Result<()> {
+        let material = |name: [&'static str; 2], young, poisson| {
+            positive(name[0], young)?;
+            if (0.0..=0.5).contains(&poisson) {
+                return Ok(());
+            }
+            Err(Error::domain(name[1], poisson, "a number in [0, 1/2]"))
+        };
+        positive("thickness of the layer", self.thickness)?;
+        material(["Young's modulus of the layer", "Poisson's ratio of the layer"], self.young, self.poisson)?;
+        if let LayerBase::HalfSpace { young, poisson } = self.base {
+            material(["Young's modulus of the base", "Poisson's ratio of the base"], young, poisson)?;
+        }
+        let ratio = self.shear_ratio();
+        if matches!(self.base, LayerBase::HalfSpace { .. }) && !SHEAR_RATIOS.contains(&ratio) {
+            let expected = "a number in [1e-6, 1e6]: take a rigid base, or a body without a layer";
+            return Err(Error::domain("shear modulus of the layer over that of the base", ratio, expected));
+        }
+        Ok(())
+    }
+}
+
+/// Ratios of the shear moduli of a layer and its base in which both are seen.
+const SHEAR_RATIOS: std::ops::RangeInclusive<f64> = 1e-6..=1e6;
 
 /// Boundary condition outside of the rectangle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -97,6 +97,12 @@ impl Scene {
             }
         }
         self.effects.validate()?;
+        if let Some(layer) = self.effects.layer
+            && self.contact_modulus > layer.modulus() * (1.0 + SAME_MODULUS)
+        {
+            let expected = format!("at most {}, that of the layer under a rigid body", layer.modulus());
+            return Err(Error::domain("contact_modulus", self.contact_modulus, expected));
+        }
         self.outputs.conductance.resistivity()?;
         if self.outputs.mean_gap && self.effects.boundary != Boundary::Periodic {
             let what = "a mean gap: its states have an approach";

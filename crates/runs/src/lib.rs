@@ -47,7 +47,7 @@ mod shard;
 mod store;
 mod terminal;
 mod threads;
-mod work;
+mod work_done;
 
 pub use checkpoint::{Checkpoint, Unused};
 pub use csv_file::{CsvFile, Header, csv_bytes, number, write_csv};
@@ -68,4 +68,4 @@ pub use shard::{MOST_SHARDS, Shard, ShardChoice, TASKS, assign, largest_first};
 pub use store::{Pack, PackHead, Store, fnv1a_128};
 pub use terminal::{folded, print, print_error};
 pub use threads::{JOB_STACK, MOST_THREADS, THREADS_VARIABLE, granted_pool, grants_a_thread, with_threads};
-pub use work::Work;
+pub use work_done::WorkDone;

@@ -2,7 +2,7 @@
 
 use crate::amounts::duration;
 use crate::progress::{JobInHand, Progress};
-use crate::work::Work;
+use crate::work_done::WorkDone;
 use indicatif::{ProgressBar, ProgressState, ProgressStyle};
 use std::io::IsTerminal as _;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -34,7 +34,7 @@ struct Stage {
     bar: ProgressBar,
     /// Bits of the seconds left, for the bar, which is drawn by a thread of its own.
     left: Arc<AtomicU64>,
-    work: Work,
+    work: WorkDone,
     /// Last message about a job in progress.
     words: String,
     jobs: usize,
@@ -75,7 +75,7 @@ impl Stage {
         Self {
             bar,
             left: Arc::new(AtomicU64::new(f64::NAN.to_bits())),
-            work: Work::new(total),
+            work: WorkDone::new(total),
             words: String::new(),
             jobs: 0,
             reused: 0,

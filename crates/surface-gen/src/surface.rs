@@ -196,7 +196,7 @@ mod tests {
     fn random_surfaces_are_the_same_by_either_door() {
         let s = SelfAffine::new(2.4, 1.0, 1.0).unwrap();
         let surface = Surface::SelfAffine(s);
-        assert_eq!(*height_map(&surface, 9, 4).unwrap(), self_affine_map(&s, 9, 4).unwrap());
+        assert_eq!(*height_map(&surface, 9, 4).unwrap(), crate::self_affine_map(&s, 9, 4).unwrap());
         assert_eq!(*line(&surface, 9, 4).unwrap(), self_affine_line(&s, 9, 4).unwrap());
     }
 

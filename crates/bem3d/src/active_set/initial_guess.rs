@@ -216,7 +216,8 @@ fn coarser(problem: &Problem) -> Problem {
             *mean = if count > 0.0 { sum / count } else { f64::INFINITY };
         }
     });
-    let medium = problem.medium;
+    // A side of the coarse cells is as many fine ones.
+    let medium = problem.medium.on_larger_cells(pressure_ratio(fine, &tuning));
     let mut coarse = Problem::recorded(grid, Arc::new(z), medium, &tuning, problem.operators.recorder());
     coarse.bounds = problem.bounds.scaled(pressure_ratio(fine, &tuning));
     coarse

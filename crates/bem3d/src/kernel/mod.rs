@@ -11,6 +11,9 @@ mod definition;
 mod half_plane;
 mod half_space;
 mod inverse;
+mod layer;
+mod layer_flux;
+mod layer_symbol;
 pub mod love;
 mod period;
 mod periodic;
@@ -22,6 +25,8 @@ mod waves;
 
 pub use definition::{Evidence, Kernel};
 pub use inverse::Inverse;
+pub use layer::LayerOnGrid;
+pub use layer_symbol::LayerSymbol;
 pub use symbol::Symbol;
 pub use table::{CouplingTable, KernelTable, Medium, NormalTable, TangentialTable};
 pub use tensor::{Invertible, Symmetric, Tensor};

@@ -4,6 +4,7 @@ use super::coupling::CouplingKernel;
 use super::definition::{Coefficients, Kernel};
 use super::half_plane::HalfPlane;
 use super::half_space::HalfSpace;
+use super::layer::{LayerOnGrid, LayeredBody};
 use super::periodic::PeriodicHalfSpace;
 use super::symbol::{Parity, Symbol};
 use super::tangential::TangentialKernel;
@@ -17,7 +18,7 @@ use std::fmt;
 use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError, Weak};
 
 /// The body that deforms under a pressure, and its continuation outside the map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Medium {
     /// A half-space that is unloaded outside the map.
     HalfSpace,
@@ -25,11 +26,25 @@ pub enum Medium {
     Periodic,
     /// A half-plane in plane strain, unloaded outside the line: one row of strips.
     HalfPlane,
+    /// A layer on a base, with this boundary of the map.
+    Layer(LayerOnGrid, Boundary),
 }
 
 impl From<Boundary> for Medium {
     fn from(boundary: Boundary) -> Self {
         if boundary == Boundary::Periodic { Self::Periodic } else { Self::HalfSpace }
+    }
+}
+
+impl Medium {
+    /// The same on cells whose side is so many times as large: lengths of a medium are counted in it.
+    pub fn on_larger_cells(self, times: f64) -> Self {
+        match self {
+            Self::Layer(layer, boundary) => {
+                Self::Layer(LayerOnGrid { thickness: layer.thickness / times, ..layer }, boundary)
+            }
+            other => other,
+        }
     }
 }
 
@@ -49,6 +64,7 @@ impl NormalTable {
             Medium::HalfSpace => Self::of(HalfSpace { grid }),
             Medium::Periodic => Self::of(PeriodicHalfSpace { grid }),
             Medium::HalfPlane => Self::of(HalfPlane { grid }),
+            Medium::Layer(layer, boundary) => Self::of(LayeredBody { grid, boundary, layer }),
         }
     }
 }

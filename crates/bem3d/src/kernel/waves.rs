@@ -55,8 +55,6 @@ impl Integrand {
 /// The symbol at the waves of a grid, `[kx * (rows / 2 + 1) + ky]`, 0 at the mean.
 pub(super) fn symbol(grid: Grid, integrand: Integrand) -> Vec<f64> {
     let (a, b) = grid.cell();
-    let (along_x, along_y) =
-        (WaveInterpolation::new(grid.columns, a / b), WaveInterpolation::new(grid.rows, b / a));
     let aliases = AliasSum::new(integrand, (a, b));
     let symmetric = grid.has_square_cells() && integrand == Integrand::Normal;
     let alias = |x: f64, y: f64| {
@@ -64,6 +62,15 @@ pub(super) fn symbol(grid: Grid, integrand: Integrand) -> Vec<f64> {
         let odd = integrand.odd_factor(x, y);
         if odd > 0.0 { aliases.at(x, y) / odd } else { 0.0 }
     };
+    at_waves(grid, alias, |alias, x, y| first(integrand, x, y, a, b) + alias * integrand.odd_factor(x, y))
+}
+
+/// Values at the waves of a grid, `[kx * (rows / 2 + 1) + ky]`, 0 at the mean: `whole(alias, x, y)`, of a smooth even
+/// part that is evaluated at few waves and interpolated.
+fn at_waves(grid: Grid, alias: impl Fn(f64, f64) -> f64, whole: impl Fn(f64, f64, f64) -> f64) -> Vec<f64> {
+    let (a, b) = grid.cell();
+    let (along_x, along_y) =
+        (WaveInterpolation::new(grid.columns, a / b), WaveInterpolation::new(grid.rows, b / a));
     let values: Vec<Vec<f64>> =
         along_y.nodes.iter().map(|&y| along_x.nodes.iter().map(|&x| alias(x, y)).collect()).collect();
     let wave = |k: usize, n: usize| TAU * k as f64 / n as f64;
@@ -72,14 +79,68 @@ pub(super) fn symbol(grid: Grid, integrand: Integrand) -> Vec<f64> {
         let line: Vec<f64> = values.iter().map(|row| along_x.at(kx, row)).collect();
         for ky in 0..=grid.rows / 2 {
             let (x, y) = (wave(kx, grid.columns), wave(ky, grid.rows));
-            symbol.push(if (kx, ky) == (0, 0) {
-                0.0
-            } else {
-                first(integrand, x, y, a, b) + along_y.at(ky, &line) * integrand.odd_factor(x, y)
-            });
+            symbol.push(if (kx, ky) == (0, 0) { 0.0 } else { whole(along_y.at(ky, &line), x, y) });
         }
     }
     symbol
+}
+
+/// What a base changes of the symbol of a half-space at the waves of a grid, in the same order: `excess(q)/|q|` in the
+/// place of `1/|q|`. The excess falls off beyond `1/length`.
+///
+/// Waves that the grid does not distinguish are few where the length is a cell or more, and are summed as they are.
+/// Beside larger cells the excess changes slowly from one of them to the next, and they are an alternating sum.
+pub(super) fn excess_symbol(grid: Grid, excess: impl Fn(f64) -> f64, length: f64) -> Vec<f64> {
+    let (a, b) = grid.cell();
+    if length >= FEW_ALIASES * a.max(b) {
+        return at_waves(grid, |_, _| 0.0, |_, x, y| excess_at(grid, &excess, length, (x, y)));
+    }
+    let aliases = AliasSum::new(Integrand::Normal, (a, b));
+    at_waves(
+        grid,
+        |x, y| aliases.with(x, y, &excess),
+        |alias, x, y| alias + first(Integrand::Normal, x, y, a, b) * excess((x / a).hypot(y / b)),
+    )
+}
+
+/// Beyond this wave times the length the excess is below rounding.
+const LARGEST_EXCESS: f64 = 22.0;
+/// From this length over the side of a cell on, each alias is summed.
+const FEW_ALIASES: f64 = 0.5;
+
+/// The sum of the excess over a wave (in radians a cell) and its aliases.
+fn excess_at(grid: Grid, excess: impl Fn(f64) -> f64, length: f64, (x, y): (f64, f64)) -> f64 {
+    let (a, b) = grid.cell();
+    let most = LARGEST_EXCESS / length;
+    // Waves along one direction: `x + 2 pi m` over the side, with their factors.
+    let along = |q: f64, side: f64| -> Vec<(f64, f64)> {
+        let reach = ((most * side + q) / TAU).floor() as i32;
+        (-reach..=reach)
+            .map(|m| q + TAU * f64::from(m))
+            .filter(|wave| wave.abs() <= most * side)
+            .map(|wave| (wave / side, sinc(wave / 2.0)))
+            .collect()
+    };
+    let (x, y) = (along(x, a), along(y, b));
+    let mut sum = 0.0;
+    for &(wy, fy) in &y {
+        for &(wx, fx) in &x {
+            let q = wx.hypot(wy);
+            if q > 0.0 && q < most {
+                sum += fx * fy * excess(q) / q;
+            }
+        }
+    }
+    TAU * sum
+}
+
+/// The symbol of a half-space and the excess at one wave, in radians a cell, with the waves that the grid does not
+/// distinguish from it.
+pub(super) fn symbol_at(grid: Grid, excess: impl Fn(f64) -> f64, (x, y): (f64, f64)) -> f64 {
+    let (a, b) = grid.cell();
+    let factor = |q: f64| 1.0 + excess(q);
+    let aliases = AliasSum::new(Integrand::Normal, (a, b));
+    first(Integrand::Normal, x, y, a, b) * factor((x / a).hypot(y / b)) + aliases.with(x, y, factor)
 }
 
 /// `sin(x) / x`.
@@ -162,12 +223,17 @@ impl AliasSum {
     /// `Y = y + 2 pi n`, `Q = (X/a, Y/b)`, without `m = n = 0`; `0 <= x, y <= pi`. For other integrands than
     /// [`Integrand::Normal`] their factor replaces `1 / |Q|`.
     fn at(&self, x: f64, y: f64) -> f64 {
+        self.with(x, y, |_| 1.0)
+    }
+
+    /// The same with a factor that depends on |Q|.
+    fn with(&self, x: f64, y: f64, factor: impl Fn(f64) -> f64) -> f64 {
         let (a, b) = self.cell;
         let (x, y) = (self.terms(x, a), self.terms(y, b));
         let mut sum = 0.0;
         for (i, &(wy, fy)) in y.iter().enumerate() {
             for &(wx, fx) in &x[usize::from(i == 0)..] {
-                sum += self.integrand.at(fx * fy, wx, wy);
+                sum += self.integrand.at(fx * fy * factor(wx.hypot(wy)), wx, wy);
             }
         }
         TAU * sum
@@ -217,6 +283,28 @@ mod tests {
                 let (x, y) = (TAU * kx as f64 / nx as f64, TAU * ky as f64 / ny as f64);
                 let (sum, smooth) = (aliases.at(x, y), along_y.at(ky, &line));
                 assert!((sum - smooth).abs() < 1e-13, "aspect {aspect}, {kx} {ky}: {sum} {smooth}");
+            }
+        }
+    }
+
+    /// A layer of any thickness: few aliases, each by itself, and many as an alternating sum that is interpolated.
+    #[test]
+    fn the_excess_of_a_layer_is_the_sum_over_all_aliases() {
+        use contact_model::{Layer, LayerBase};
+        for (base, stretch) in
+            [(LayerBase::Rigid, 1.0_f64), (LayerBase::HalfSpace { young: 0.2, poisson: 0.3 }, 1.4)]
+        {
+            let symbol =
+                crate::kernel::LayerSymbol::new(&Layer { thickness: 1.0, young: 1.0, poisson: 0.3, base });
+            let grid = Grid { columns: 130, rows: 140, stretch };
+            for thickness in [3.0, 0.6, 0.4, 0.1, 0.02] {
+                let excess = |q: f64| symbol.excess(q * thickness);
+                let found = excess_symbol(grid, excess, thickness);
+                for (kx, ky) in [(1, 0), (0, 1), (17, 40), (65, 70), (3, 69)] {
+                    let waves = (TAU * kx as f64 / 130.0, TAU * ky as f64 / 140.0);
+                    let (found, exact) = (found[kx * 71 + ky], excess_at(grid, excess, thickness, waves));
+                    assert!((found - exact).abs() < 1e-11, "{base:?} {thickness} {kx} {ky}: {found} {exact}");
+                }
             }
         }
     }

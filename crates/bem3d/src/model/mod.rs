@@ -68,6 +68,10 @@ impl ContactModel for Bem3d {
             citation: "D. Maugis, J. Colloid Interface Sci. 150, 243 (1992)",
             what: "adhesion of finite range by Dugdale's law",
         };
+        const LAYER: Source = Source {
+            citation: "T. C. O'Sullivan, R. B. King, J. Tribol. 110, 235 (1988)",
+            what: "displacements of a layer on a half-space",
+        };
         let mut sources = match effects.adhesion {
             Adhesion::ShortRange { .. } => vec![JKR],
             Adhesion::FiniteRange { law: AdhesionLaw::Dugdale, .. } => vec![MAUGIS],
@@ -75,6 +79,9 @@ impl ContactModel for Bem3d {
         };
         if effects.friction != Friction::Off {
             sources.extend([CERRUTI, KALKER]);
+        }
+        if effects.layer.is_some() {
+            sources.push(LAYER);
         }
         sources
     }
@@ -103,6 +110,7 @@ impl ContactModel for Bem3d {
                 Effect::ShearStrength,
                 Effect::TractionLimit,
                 Effect::FullCoupling,
+                Effect::Layer,
             ],
             not_combined: NOT_COMBINED,
             loads: LoadKind::ALL,
@@ -149,6 +157,7 @@ impl Bem3d {
     ) -> Result<PreparedBem3d> {
         self.abilities().refuse(NAME, scene)?;
         profile::check(scene)?;
+        profile::check_layer(scene)?;
         if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
             return Err(Error::domain("tolerance", self.tolerance, "a number in (0, 1)"));
         }
@@ -186,6 +195,18 @@ const NOT_COMBINED: &[NotCombined] = &[
     NotCombined {
         effects: [&[Effect::Hardness], &[Effect::FullCoupling]],
         reason: "not solved, as the tractions would displace the surface that flows",
+    },
+    NotCombined {
+        effects: [&[Effect::Layer], ADHESION],
+        reason: "a layer on a stiffer base bulges beside a load, so that the equilibria of an attraction are not ordered \
+                 and none of them is distinguished",
+    },
+    NotCombined {
+        effects: [
+            &[Effect::Layer],
+            &[Effect::Friction, Effect::ShearStrength, Effect::TractionLimit, Effect::FullCoupling],
+        ],
+        reason: "how tangential tractions displace a layer is not known here",
     },
 ];
 

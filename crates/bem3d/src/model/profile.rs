@@ -1,23 +1,41 @@
 //! Profiles: bodies that are uniform along y, in plane strain.
 
 use super::options::NAME;
-use crate::kernel::{Kernel, Medium};
+use crate::kernel::{Kernel, LayerOnGrid, LayerSymbol, Medium};
 use contact_model::{Adhesion, Boundary, Conductance, Error, Friction, Outputs, Result, Scene, Surface};
 
 /// The body under a scene's surface: under a profile with free boundaries a half-plane. With periodic ones
 /// the kernel of one row is that of plane strain by itself, because a pressure that is periodic with one row
-/// does not vary along y.
-pub(super) fn medium(scene: &Scene) -> Medium {
-    match (&scene.surface, scene.effects.boundary) {
-        (Surface::Profile(_), Boundary::Free) => Medium::HalfPlane,
-        (_, boundary) => boundary.into(),
+/// does not vary along y. Lengths of a layer are counted in `length`, the mean side of a cell.
+pub(super) fn medium(scene: &Scene, length: f64) -> Medium {
+    match (&scene.surface, scene.effects.boundary, scene.effects.layer) {
+        (Surface::Profile(_), Boundary::Free, _) => Medium::HalfPlane,
+        (_, boundary, Some(layer)) => {
+            let symbol = LayerSymbol::new(&layer);
+            let share = scene.contact_modulus / layer.modulus();
+            Medium::Layer(LayerOnGrid { thickness: layer.thickness / length, share, symbol }, boundary)
+        }
+        (_, boundary, None) => boundary.into(),
     }
+}
+
+/// Refuses outputs that a layer does not have.
+///
+/// # Errors
+/// [`Error::Unsupported`] for a conductance.
+pub(super) fn check_layer(scene: &Scene) -> Result<()> {
+    if scene.effects.layer.is_some() && scene.outputs.conductance != Conductance::Off {
+        let what =
+            "a conductance of a layered body: it follows from the stiffness of homogeneous half-spaces";
+        return Err(Error::unsupported(NAME, what));
+    }
+    Ok(())
 }
 
 /// Refuses effects and outputs that profiles do not have.
 ///
 /// # Errors
-/// [`Error::Unsupported`] for adhesion and friction, and for a displacement or a conductance of a half-plane.
+/// [`Error::Unsupported`] for adhesion, friction and a layer, and for a displacement or a conductance of a half-plane.
 pub(super) fn check(scene: &Scene) -> Result<()> {
     if !matches!(scene.surface, Surface::Profile(_)) {
         return Ok(());
@@ -30,7 +48,13 @@ pub(super) fn check(scene: &Scene) -> Result<()> {
         let what = "friction of a profile: the tangential kernel is that of three dimensions";
         return Err(Error::unsupported(NAME, what));
     }
-    if medium(scene) != Medium::HalfPlane {
+    if scene.effects.layer.is_some() {
+        return Err(Error::unsupported(
+            NAME,
+            "a layer under a profile: its kernel is that of three dimensions",
+        ));
+    }
+    if scene.effects.boundary != Boundary::Free {
         return Ok(());
     }
     let refused = |what: &str| {

@@ -2,8 +2,8 @@
 
 use crate::scenes::read::{Diagnostic, Entries, Entry, ReadResult, System, amount, number, printed};
 use contact_model::{
-    Adhesion, AdhesionLaw, Boundary, Coupling, Effects, Friction, FrictionLaw, Hardness, PronySeries,
-    Relaxing, Rheology,
+    Adhesion, AdhesionLaw, Boundary, Coupling, Effects, Friction, FrictionLaw, Hardness, Layer, LayerBase,
+    PronySeries, Relaxing, Rheology,
 };
 use surface_io::Dimension;
 
@@ -133,6 +133,16 @@ pub static EFFECT_KEYS: &[EffectKey] = &[
         words: |effects, system| {
             (effects.rheology != Rheology::Elastic).then(|| rheology_words(&effects.rheology, system))
         },
+    },
+    EffectKey {
+        name: "layer",
+        takes: "`{ thickness, young, poisson, base }` with the `base` `{ young, poisson }`, `\"rigid\"` or `\"slipping\"`",
+        about: "An elastic layer, such as a coating, that is bonded to an elastic base or to a rigid one, or slips on a rigid one. The \
+                body that presses on it is rigid, or the one of `bodies`.",
+        off: "the bodies are homogeneous",
+        read: |entry, system, effects| read_layer(entry, system).map(|layer| effects.layer = Some(layer)),
+        print: |effects, system| effects.layer.map(|layer| print_layer(&layer, system)),
+        words: |effects, system| effects.layer.map(|layer| layer_words(&layer, system)),
     },
 ];
 
@@ -364,6 +374,71 @@ fn read_rheology(entry: &Entry<'_>, system: System) -> ReadResult<Rheology> {
     Ok(rheology)
 }
 
+const RIGID_BASES: [(&str, LayerBase); 2] = [("rigid", LayerBase::Rigid), ("slipping", LayerBase::Slipping)];
+
+fn read_layer(entry: &Entry<'_>, system: System) -> ReadResult<Layer> {
+    let table = entry.table()?;
+    let thickness = table.require("thickness", "\"2 um\"")?.positive(Dimension::LENGTH, system)?;
+    let (young, poisson) = read_material(&table, system)?;
+    let of = table.require("base", "\"rigid\"")?;
+    let base = if of.is_text() {
+        of.choice(&RIGID_BASES)?
+    } else {
+        let base = of.table()?;
+        let (young, poisson) = read_material(&base, system)?;
+        base.finish()?;
+        LayerBase::HalfSpace { young, poisson }
+    };
+    table.finish()?;
+    let layer = Layer { thickness, young, poisson, base };
+    layer.validate().map_err(|error| entry.diagnostic(error.to_string()))?;
+    Ok(layer)
+}
+
+/// Young's modulus and Poisson's ratio.
+fn read_material(table: &Entries<'_>, system: System) -> ReadResult<(f64, f64)> {
+    let young = table.require("young", "\"70 GPa\"")?.positive(Dimension::PRESSURE, system)?;
+    let ratio = table.require("poisson", "0.3")?;
+    let poisson = ratio.number()?;
+    if (0.0..=0.5).contains(&poisson) {
+        return Ok((young, poisson));
+    }
+    Err(ratio
+        .diagnostic(format!("`poisson` = {poisson}: expected a number in [0, 0.5]"))
+        .with_help("0.5 is incompressible"))
+}
+
+fn print_layer(layer: &Layer, system: System) -> String {
+    let material = |young: f64, poisson: f64| {
+        let young = printed::quantity(young, Dimension::PRESSURE, system);
+        format!("young = {young}, poisson = {}", printed::number(poisson))
+    };
+    let base = match layer.base {
+        LayerBase::HalfSpace { young, poisson } => format!("{{ {} }}", material(young, poisson)),
+        rigid => {
+            let word = RIGID_BASES.iter().find(|(_, base)| *base == rigid).map_or("rigid", |(word, _)| word);
+            printed::text(word)
+        }
+    };
+    let thickness = printed::quantity(layer.thickness, Dimension::LENGTH, system);
+    format!("{{ thickness = {thickness}, {}, base = {base} }}", material(layer.young, layer.poisson))
+}
+
+fn layer_words(layer: &Layer, system: System) -> String {
+    let material = |young: f64, poisson: f64| {
+        format!("E = {}, nu = {}", amount(young, system.shown("Pa")), number(poisson))
+    };
+    let base = match layer.base {
+        LayerBase::HalfSpace { young, poisson } => {
+            format!("bonded to a half-space of {}", material(young, poisson))
+        }
+        LayerBase::Slipping => "slipping on a rigid base".to_owned(),
+        _ => "bonded to a rigid base".to_owned(),
+    };
+    let thickness = amount(layer.thickness, system.shown("m"));
+    format!("{thickness} of {}, {base}", material(layer.young, layer.poisson))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -380,7 +455,8 @@ mod tests {
             assert!(Effect::ALL.iter().any(|effect| effect.key() == key.name), "{key:?}");
         }
         let text = "boundary = \"periodic\"\nhardness = 2\nadhesion = 0.5\nfriction = { coefficient = 0.1 }\n\
-                    rheology = { kind = \"maxwell\", viscosity = 3 }";
+                    rheology = { kind = \"maxwell\", viscosity = 3 }\n\
+                    layer = { thickness = 0.1, young = 2, poisson = 0.3, base = { young = 1, poisson = 0.5 } }";
         let effects = parse_effects(text).unwrap();
         assert!(effect_lines(&effects, System::None).iter().all(|line| line.on));
         assert_eq!(effects.adhesion, Adhesion::ShortRange { work: 0.5 });

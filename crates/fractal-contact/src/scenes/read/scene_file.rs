@@ -12,8 +12,8 @@ use crate::scenes::read::{
     ReadResult, Registry, RequestedAccuracy, RequestedOutputs, Result, SceneSurface, System, nearest, short,
 };
 use contact_model::{
-    Adhesion, Boundary, Cells, Directions, Effect, Effects, Friction, Hardness, NormalLoad, Output, Pair,
-    Paths, Rheology, Scene, Size, Surface,
+    Adhesion, Body, Boundary, Cells, Directions, Effect, Effects, Friction, Hardness, NormalLoad, Output,
+    Pair, Paths, Rheology, Scene, Size, Surface,
 };
 use std::io::Read as _;
 use std::ops::Range;
@@ -359,6 +359,34 @@ impl SceneFile {
     }
 }
 
+/// The material of both bodies. The second one is that of a layer, where there is one, and the first the one that
+/// presses on it.
+fn with_layer(
+    material: Option<Material>,
+    effects: &Effects,
+    places: &Places,
+) -> ReadResult<Option<Material>> {
+    let Some(layer) = effects.layer else { return Ok(material) };
+    let second = Body::Elastic { young: layer.young, poisson: layer.poisson };
+    let first = match material {
+        None => Body::Rigid,
+        Some(Material::Bodies(Pair { first: Body::Rigid, second: pressing })) => pressing,
+        Some(Material::Bodies(_)) => {
+            let wrong = places.at_value("scene.bodies", "`bodies` names two elastic bodies beside a `layer`");
+            return Err(wrong.with_help(
+                "name the one that presses on the layer; the other one is the layer on its base",
+            ));
+        }
+        Some(Material::ContactModulus(_)) => {
+            let wrong = places.at_key("scene.contact_modulus", "`contact_modulus` is given beside a `layer`");
+            return Err(wrong.with_help(
+                "remove it: E* follows from the layer, and from the body in `bodies` if that is not rigid",
+            ));
+        }
+    };
+    Ok(Some(Material::Bodies(Pair { first, second })))
+}
+
 impl SceneFile {
     /// The scene of a question, checked as far as that is possible without a model.
     fn answered(question: Question, path: &Path, places: Places) -> ReadResult<Self> {
@@ -366,7 +394,7 @@ impl SceneFile {
         if question.models.is_empty() {
             return Err(missing("scene", "models", "[\"bem3d\"]", &places));
         }
-        let (contact_modulus, pair) = match material {
+        let (contact_modulus, pair) = match with_layer(material, &effects, &places)? {
             Some(Material::ContactModulus(modulus)) => (modulus, None),
             Some(Material::Bodies(pair)) => {
                 let wrong = |error: contact_model::Error| places.at_value("scene.bodies", error.to_string());

@@ -8,7 +8,7 @@ const FIRST: f64 = 1.0;
 
 /// The work of a stage of a run, as relative costs, and how much of it is done.
 #[derive(Debug, Default)]
-pub struct Work {
+pub struct WorkDone {
     total: f64,
     /// Of whole jobs.
     whole: f64,
@@ -30,7 +30,7 @@ struct JobPart {
     first: f64,
 }
 
-impl Work {
+impl WorkDone {
     /// Work of this relative cost, of which nothing is done.
     pub fn new(total: u64) -> Self {
         Self { total: total as f64, ..Self::default() }
@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn time_left_follows_from_what_this_run_has_done() {
-        let mut done = Work { total: 100.0, ..Work::default() };
+        let mut done = WorkDone { total: 100.0, ..WorkDone::default() };
         done.add(40, true);
         assert_eq!(done.left(5.0), None);
         done.add(10, false);
@@ -157,7 +157,7 @@ mod tests {
 
     #[test]
     fn a_job_is_not_done_before_its_pictures_are_drawn() {
-        let mut done = Work { total: 50.0, ..Work::default() };
+        let mut done = WorkDone { total: 50.0, ..WorkDone::default() };
         let pictures = Pictures { cost: 20, drawn: 0, all: 4 };
         let mut job = JobInHand {
             name: "map",

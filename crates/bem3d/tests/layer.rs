@@ -1,0 +1,169 @@
+//! Contact of a layer on a base through the common traits: closed forms, limits, stiffness and refusals.
+
+#![allow(clippy::unwrap_used)] // Tests.
+
+use bem3d::{
+    Bem3d, Boundary, Conductance, ContactModel, ContactState, Error, Friction, Layer, LayerBase, Load,
+    Outputs, Scene, SelfAffine, Surface,
+};
+use std::f64::consts::PI;
+
+const ON: [LayerBase; 4] = [
+    LayerBase::Rigid,
+    LayerBase::Slipping,
+    LayerBase::HalfSpace { young: 0.1, poisson: 0.4 },
+    LayerBase::HalfSpace { young: 20.0, poisson: 0.2 },
+];
+
+fn scene(surface: Surface, layer: Layer) -> Scene {
+    let mut scene = Scene::new(surface, layer.modulus());
+    scene.effects.layer = Some(layer);
+    scene.outputs = Outputs { area: true, stiffness: true, gap: true, ..Outputs::default() };
+    scene
+}
+
+fn solve(scene: &Scene, cells: usize, load: Load) -> ContactState {
+    let model = Bem3d { cells, tolerance: 1e-8, ..Bem3d::default() };
+    ContactModel::prepare(&model, scene, 3).unwrap().solve(load).unwrap()
+}
+
+fn rough() -> Surface {
+    let mut rough = SelfAffine::new(2.2, 1.0, 0.01).unwrap();
+    rough.roll_off = Some(12.0);
+    rough.short_cutoff = Some(60.0);
+    Surface::SelfAffine(rough)
+}
+
+/// Force over that of a thin layer, for a ball whose contact radius would be `radius` by it.
+fn over_thin(thickness: f64, poisson: f64, radius: f64, cells: usize) -> [f64; 2] {
+    let layer = Layer { thickness, young: 1.0, poisson, base: LayerBase::Rigid };
+    let incompressible = poisson > 0.499;
+    // Of an incompressible layer the volume beside the contact is that of the indentation.
+    let approach = radius.powi(2) / if incompressible { 4.0 } else { 2.0 };
+    let scene = scene(Surface::Sphere { radius: 1.0, size: 1.0.into() }, layer);
+    let state = solve(&scene, cells, Load::approach(approach));
+    let force = if incompressible {
+        PI * layer.modulus() * radius.powi(6) / (128.0 * thickness.powi(3))
+    } else {
+        let oedometric = (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+        PI * oedometric * approach.powi(2) / thickness
+    };
+    [state.force / force, (state.area.unwrap() / PI).sqrt() / radius]
+}
+
+/// Closed forms of a ball on a layer that is thin beside the contact. What they leave out is of the order of the
+/// thickness over the radius, so that it is halved with it.
+#[test]
+fn a_ball_on_a_thin_layer() {
+    for poisson in [0.2, 0.5] {
+        let errors = |thickness| over_thin(thickness, poisson, 0.4, 257).map(|ratio| (ratio - 1.0).abs());
+        let (thick, thin) = (errors(0.04), errors(0.02));
+        for (thick, thin) in thick.into_iter().zip(thin) {
+            assert!(thin < 0.07 && thin < 0.75 * thick, "nu = {poisson}: {thick} {thin}");
+        }
+    }
+}
+
+/// A layer of the material of its base is a half-space, a thick one too, and a thin one is its base.
+#[test]
+fn a_layer_that_is_none() {
+    let material = LayerBase::HalfSpace { young: 1.0, poisson: 0.3 };
+    let soft = LayerBase::HalfSpace { young: 0.2, poisson: 0.3 };
+    for boundary in [Boundary::Free, Boundary::Periodic] {
+        let force = |layer: Option<(f64, LayerBase)>, young: f64| {
+            let layer = layer.map(|(thickness, base)| Layer { thickness, young: 1.0, poisson: 0.3, base });
+            let mut scene = Scene::new(rough(), young / 0.91);
+            scene.effects.layer = layer;
+            scene.effects.boundary = boundary;
+            let load = if boundary == Boundary::Free { Load::approach(0.02) } else { Load::mean_gap(0.01) };
+            solve(&scene, 64, load).force
+        };
+        let half_space = force(None, 1.0);
+        for layer in [(0.03, material), (1e4, soft)] {
+            approx::assert_relative_eq!(force(Some(layer), 1.0), half_space, max_relative = 1e-4);
+        }
+        approx::assert_relative_eq!(force(Some((1e-6, soft)), 1.0), force(None, 0.2), max_relative = 1e-2);
+    }
+}
+
+/// `k = dF/dd`, and of periodic boundaries `-dF/dg`, on every base.
+#[test]
+fn the_stiffness_is_the_slope_of_the_force() {
+    for base in ON {
+        for boundary in [Boundary::Free, Boundary::Periodic] {
+            let layer = Layer { thickness: 0.1, young: 1.0, poisson: 0.3, base };
+            let mut scene = scene(rough(), layer);
+            scene.effects.boundary = boundary;
+            let load = |at: f64| {
+                if boundary == Boundary::Free { Load::approach(at) } else { Load::mean_gap(0.03 - at) }
+            };
+            let (at, step) = (0.02, 1e-5);
+            let k = solve(&scene, 48, load(at)).stiffness.unwrap();
+            let slope = (solve(&scene, 48, load(at + step)).force - solve(&scene, 48, load(at - step)).force)
+                / (2.0 * step);
+            approx::assert_relative_eq!(k, slope, max_relative = 1e-2);
+        }
+    }
+}
+
+/// Cells of other sides, as the same problem turned by a right angle.
+#[test]
+fn oblong_cells_and_their_turned_copy() {
+    for base in ON {
+        let layer = Layer { thickness: 0.06, young: 1.0, poisson: 0.4, base };
+        let force = |columns: usize, rows: usize, turned: bool| {
+            let map = bem3d::HeightMap::from_fn([columns, rows], [1.0, 1.0], |ix, iy| {
+                let (x, y) = ((ix as f64 + 0.5) / columns as f64, (iy as f64 + 0.5) / rows as f64);
+                let (x, y) = if turned { (y, x) } else { (x, y) };
+                0.01 * ((9.0 * x).sin() + (14.0 * y).cos())
+            });
+            let scene = scene(Surface::Heights(std::sync::Arc::new(map.unwrap())), layer);
+            solve(&scene, 64, Load::approach(0.01)).force
+        };
+        let (one, two) = (force(40, 24, false), force(24, 40, true));
+        approx::assert_relative_eq!(one, two, max_relative = 1e-6);
+    }
+}
+
+/// A body that presses on the layer adds its compliance as a half-space.
+#[test]
+fn the_body_that_presses_adds_its_compliance() {
+    let layer = Layer { thickness: 1e5, young: 1.0, poisson: 0.3, base: LayerBase::Rigid };
+    let mut pressed = scene(rough(), layer);
+    pressed.contact_modulus = 0.4 * layer.modulus();
+    let thick = solve(&pressed, 48, Load::approach(0.02)).force;
+    let half_space = solve(&Scene::new(rough(), pressed.contact_modulus), 48, Load::approach(0.02)).force;
+    approx::assert_relative_eq!(thick, half_space, max_relative = 1e-3);
+    // More than the layer alone cannot be.
+    pressed.contact_modulus = 1.1 * layer.modulus();
+    assert!(matches!(ContactModel::prepare(&Bem3d::default(), &pressed, 0), Err(Error::Domain { .. })));
+}
+
+#[test]
+fn what_a_layer_cannot_do_is_refused_by_name() {
+    let layer = Layer { thickness: 0.1, young: 1.0, poisson: 0.3, base: LayerBase::Rigid };
+    let refused = |change: &dyn Fn(&mut Scene)| {
+        let mut scene = scene(rough(), layer);
+        change(&mut scene);
+        match ContactModel::prepare(&Bem3d { cells: 16, ..Bem3d::default() }, &scene, 0) {
+            Err(error) => error.to_string(),
+            Ok(_) => panic!("not refused"),
+        }
+    };
+    let refused = |words: &str, change: &dyn Fn(&mut Scene)| {
+        let error = refused(change);
+        assert!(error.contains(words), "{error}");
+    };
+    refused("layer", &|scene| scene.effects.friction = Friction::tresca(0.1));
+    refused("conductance of a layered body", &|scene| {
+        scene.outputs.conductance = Conductance::Electrical { first: 1.0, second: 1.0 };
+    });
+    for (words, change) in [
+        ("thickness", Layer { thickness: 0.0, ..layer }),
+        ("Poisson", Layer { poisson: 0.6, ..layer }),
+        ("Young", Layer { young: f64::NAN, ..layer }),
+        ("shear modulus", Layer { base: LayerBase::HalfSpace { young: 1e-9, poisson: 0.3 }, ..layer }),
+    ] {
+        refused(words, &|scene| scene.effects.layer = Some(change));
+    }
+}
