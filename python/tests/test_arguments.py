@@ -230,7 +230,7 @@ def test_scenes_say_what_they_take():
 def test_unknown_keys_are_refused():
     with pytest.raises(TypeError, match=r"no effect is called 'hardnes': did you mean hardness\?"):
         fc.Scene(SPHERE, 1.0, effects={"hardnes": 1})
-    with pytest.raises(TypeError, match=r"no effect is called 'x': there are boundary, .* and rheology"):
+    with pytest.raises(TypeError, match=r"no effect is called 'x': there are boundary, .* and layer"):
         fc.Scene(SPHERE, 1.0, effects={"x": 1})
     with pytest.raises(TypeError, match="'hardness' is no mapping"):
         fc.Scene(SPHERE, 1.0, effects="hardness")

@@ -618,6 +618,21 @@ def test_which_effects_go_together_is_a_table():
     assert states[1].plastic_volume >= 0.0
 
 
+def test_a_layer_on_a_base():
+    # A ball on a layer that is thin beside the contact: F = pi M R d^2/h with the oedometric modulus M.
+    young, poisson, thickness, approach = 1.0, 0.2, 0.01, 0.05
+    layer = {"thickness": thickness, "young": young, "poisson": poisson, "base": "rigid"}
+    modulus = young / (1 - poisson**2)
+    scene = fc.Scene(fc.Surface.sphere(radius=1.0, size=1.0), contact_modulus=modulus, effects={"layer": layer})
+    state = fc.Bem3d(cells=129).prepare(scene).solve(approach=approach)
+    oedometric = young * (1 - poisson) / ((1 + poisson) * (1 - 2 * poisson))
+    assert state.force == pytest.approx(np.pi * oedometric * approach**2 / thickness, rel=1e-3)
+    with pytest.raises(fc.DomainError, match="contact_modulus"):
+        fc.Bem3d().prepare(fc.Scene(scene.surface, contact_modulus=2 * modulus, effects={"layer": layer}))
+    with pytest.raises(ValueError, match="rigid, slipping"):
+        fc.Effects(layer={**layer, "base": "glued"})
+
+
 def test_a_shear_strength_holds_the_attached_area():
     body = fc.Body(young=2.0, poisson=0.3)
     effects = {"adhesion": {"work": 1e-4}, "friction": {"shear_strength": 0.01}}

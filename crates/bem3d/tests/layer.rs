@@ -160,6 +160,7 @@ fn what_a_layer_cannot_do_is_refused_by_name() {
     });
     for (words, change) in [
         ("thickness", Layer { thickness: 0.0, ..layer }),
+        ("rounding", Layer { thickness: 1e-4, poisson: 0.5, young: 0.75 / 0.91, ..layer }),
         ("Poisson", Layer { poisson: 0.6, ..layer }),
         ("Young", Layer { young: f64::NAN, ..layer }),
         ("shear modulus", Layer { base: LayerBase::HalfSpace { young: 1e-9, poisson: 0.3 }, ..layer }),

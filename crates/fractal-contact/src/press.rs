@@ -150,7 +150,9 @@ fn lacking_of_bodies(asked: &PressArguments) -> Vec<Lacking> {
         let why = "Young's modulus and Poisson's ratio of both bodies, which friction needs";
         add("--bodies", "rigid, 210 GPa 0.3", why, None);
     }
-    if !asked.has_friction() && asked.contact_modulus().is_none() && bodies.is_none() {
+    // A layer has a material, and the body that presses on it may be rigid.
+    let has_layer = asked.set.iter().any(|set| set.trim_start().starts_with("effects.layer"));
+    if !asked.has_friction() && asked.contact_modulus().is_none() && bodies.is_none() && !has_layer {
         add(
             "--bodies",
             "210 GPa 0.3, 210 GPa 0.3",

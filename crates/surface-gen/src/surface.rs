@@ -20,7 +20,7 @@ const NAME: &str = "surface-gen";
 /// [`Error::Unsupported`] for a line; [`Error::Shape`] for a given map of other cells; [`Error::Domain`] for
 /// parameters that make no sense, no columns or rows, cells whose sides differ by more than 1e4, a sine with
 /// waves shorter than two cells, a punch that misses every cell centre or is wider than the shorter side;
-/// [`Error::OutOfMemory`] for a map that does not fit in memory; and as [`self_affine_map`]. Cost O(N) for N
+/// [`Error::OutOfMemory`] for a map that does not fit in memory; and as [`crate::self_affine_map`]. Cost O(N) for N
 /// cells, for self-affine surfaces O(N log N).
 ///
 /// ```

@@ -8,7 +8,7 @@ from typing import Any
 
 from . import _core
 from ._plain import frozen, named
-from .typing import Adhesion, Boundary, EffectsDict, Friction, Hardness, Rheology
+from .typing import Adhesion, Boundary, EffectsDict, Friction, Hardness, Layer, Rheology
 
 
 @dataclass(frozen=True)
@@ -42,6 +42,11 @@ class Effects:
         { kind: "kelvin_voigt" or "maxwell", viscosity }, { kind: "standard_solid", weight, time }, { kind: "prony",
         weights, times }
         Time dependence of the material. Not named: elastic.
+    layer : optional
+        { thickness, young, poisson, base } with the base { young, poisson }, "rigid" or "slipping"
+        An elastic layer, such as a coating, that is bonded to an elastic base or to a rigid one, or slips on a
+        rigid one. The body that presses on it is rigid, or the one of `bodies`. Not named: the bodies are
+        homogeneous.
 
     Examples
     --------
@@ -61,6 +66,7 @@ class Effects:
     adhesion: Adhesion | None = None
     friction: Friction | None = None
     rheology: Rheology | None = None
+    layer: Layer | None = None
 
     def __post_init__(self) -> None:
         # Copies that do not change: a change of the caller's mapping is none of the effect.

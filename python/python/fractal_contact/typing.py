@@ -116,10 +116,27 @@ class PronyDict(TypedDict):
     times: Sequence[float]
 
 
+class BodyDict(TypedDict):
+    """An elastic body."""
+
+    young: float
+    poisson: float
+
+
+class LayerDict(TypedDict):
+    """A layer on a base."""
+
+    thickness: float
+    young: float
+    poisson: float
+    base: BodyDict | Literal["rigid", "slipping"]
+
+
 Hardness = float | HardnessDict
 Adhesion = float | AdhesionDict
 Friction = float | FrictionDict
 Rheology = ViscousDict | StandardSolidDict | PronyDict
+Layer = LayerDict
 
 
 class EffectsDict(TypedDict, total=False):
@@ -130,13 +147,7 @@ class EffectsDict(TypedDict, total=False):
     adhesion: Adhesion | None
     friction: Friction | None
     rheology: Rheology | None
-
-
-class BodyDict(TypedDict):
-    """An elastic body."""
-
-    young: float
-    poisson: float
+    layer: Layer | None
 
 
 class ElectricalDict(TypedDict):

@@ -134,8 +134,9 @@ impl PreparedSurface {
         let nondimensional = Nondimensionalisation::new(scene.contact_modulus, length, height)?;
         let defined = z.len() - map.undefined();
         let mean = sum_of_pairs(&z, &z, |z, _| if z.is_finite() { z } else { 0.0 }) / defined as f64;
-        let mut problem =
-            Problem::recorded(grid, Arc::new(z), profile::medium(scene, length), tuning, recorder);
+        let medium = profile::medium(scene, length);
+        profile::check_thickness(scene, medium, length)?;
+        let mut problem = Problem::recorded(grid, Arc::new(z), medium, tuning, recorder);
         problem.nested = options.method != Method::SingleLevel;
         problem.operators.two_levels = problem.nested;
         let hardness = upper_bound(scene, nondimensional)?;

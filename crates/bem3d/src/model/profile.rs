@@ -32,6 +32,25 @@ pub(super) fn check_layer(scene: &Scene) -> Result<()> {
     Ok(())
 }
 
+/// Smallest compliance of a layer for waves of two cells, over that of a half-space. The layer is what is left of a
+/// half-space, and rounding of 1e-13 of it is then a millionth of the layer.
+const LEAST_COMPLIANCE: f64 = 1e-7;
+
+/// Refuses a layer so thin beside the cells that rounding hides it.
+///
+/// # Errors
+/// [`Error::Domain`] with the thickness.
+pub(super) fn check_thickness(scene: &Scene, medium: Medium, length: f64) -> Result<()> {
+    let (Medium::Layer(on_grid, _), Some(layer)) = (medium, scene.effects.layer) else { return Ok(()) };
+    if 1.0 + on_grid.excess(std::f64::consts::PI) >= LEAST_COMPLIANCE {
+        return Ok(());
+    }
+    let expected = format!(
+        "more beside cells of {length}: on a rigid base so thin a layer yields so little that rounding hides it"
+    );
+    Err(Error::domain("thickness of the layer", layer.thickness, expected))
+}
+
 /// Refuses effects and outputs that profiles do not have.
 ///
 /// # Errors

@@ -702,7 +702,10 @@ fn read_pair(entry: &Entry<'_>, system: System) -> ReadResult<Pair> {
         };
         Pair { first: read_body(first, system)?, second: read_body(second, system)? }
     };
-    pair.contact_modulus().map_err(|error| entry.diagnostic(error.to_string()))?;
+    // A rigid body may press on a layer, which is the other one.
+    if pair.first != Body::Rigid || pair.second != Body::Rigid {
+        pair.contact_modulus().map_err(|error| entry.diagnostic(error.to_string()))?;
+    }
     Ok(pair)
 }
 
