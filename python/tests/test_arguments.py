@@ -352,6 +352,9 @@ def test_a_refused_load_does_not_end_the_others():
     with pytest.warns(RuntimeWarning, match="1 of 3 loads failed: force = -1"):
         rows = fc.table(hertz.sweep(force=[0.1, -1.0, 0.2]))
     assert rows["status"].tolist() == ["converged", "refused", "converged"]
+    # Of many reasons the warning has three.
+    with pytest.warns(RuntimeWarning, match="9 of 9 loads failed: .*force = -3.*; and 6 other reasons$"):
+        fc.table(hertz.sweep(force=-np.arange(1.0, 10.0)))
     with pytest.raises(fc.DomainError):
         list(hertz.sweep(force=[0.1, -1.0, 0.2]))
 

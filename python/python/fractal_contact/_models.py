@@ -656,7 +656,10 @@ def table(states: Iterable[ContactState | Error]) -> NDArray[np.void]:
         else:
             raise TypeError(f"states[{i}] is {state!r}: expected a ContactState, or an error of a load")
     if failed:
-        reasons = "; ".join(dict.fromkeys(failed))
+        # The column `note` has them all.
+        distinct = list(dict.fromkeys(failed))
+        more = f"; and {len(distinct) - 3} other reasons" if len(distinct) > 3 else ""
+        reasons = "; ".join(distinct[:3]) + more
         warnings.warn(f"{len(failed)} of {len(rows)} loads failed: {reasons}", RuntimeWarning, stacklevel=2)
     known = {name for row in rows for name in row} or {"force"}
     names = [name for name in [*(quantity["name"] for quantity in quantities()), "note"] if name in known]
