@@ -4,8 +4,8 @@ use super::*;
 use crate::scenes::read::loads::LoadList;
 use crate::scenes::read::{Distributed, FieldFormat, PrescribedLoad};
 use contact_model::{
-    Adhesion, AdhesionLaw, Boundary, Conductance, Coupling, Friction, FrictionLaw, Hardness, Output,
-    PronySeries, Relaxing, Rheology, Tangential,
+    Adhesion, AdhesionLaw, Boundary, Conductance, Coupling, Friction, FrictionLaw, Hardness, Layer,
+    LayerBase, Output, PronySeries, Relaxing, Rheology, Tangential,
 };
 use proptest::collection::vec;
 use proptest::option::of;
@@ -234,11 +234,23 @@ fn effects() -> BoxedStrategy<Effects> {
     ];
     let hardness =
         prop_oneof![Just(Hardness::Off), positive().prop_map(|pressure| Hardness::Limit { pressure })];
-    (select(vec![Boundary::Free, Boundary::Periodic]), hardness, adhesion, friction, rheology)
-        .prop_map(|(boundary, hardness, adhesion, friction, rheology)| {
+    let material = || (1e9..1e12_f64, share());
+    let base = prop_oneof![
+        Just(LayerBase::Rigid),
+        Just(LayerBase::Slipping),
+        material().prop_map(|(young, poisson)| LayerBase::HalfSpace { young, poisson })
+    ];
+    let layer = of((positive(), material(), base).prop_map(|(thickness, (young, poisson), base)| Layer {
+        thickness,
+        young,
+        poisson,
+        base,
+    }));
+    (select(vec![Boundary::Free, Boundary::Periodic]), hardness, adhesion, friction, rheology, layer)
+        .prop_map(|(boundary, hardness, adhesion, friction, rheology, layer)| {
             let mut effects = Effects::default();
             (effects.boundary, effects.hardness, effects.adhesion) = (boundary, hardness, adhesion);
-            (effects.friction, effects.rheology) = (friction, rheology);
+            (effects.friction, effects.rheology, effects.layer) = (friction, rheology, layer);
             effects
         })
         .boxed()
