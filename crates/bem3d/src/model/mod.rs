@@ -8,6 +8,7 @@ mod coupled;
 mod increment;
 mod load;
 mod mean_gap;
+mod medium;
 mod memory;
 mod options;
 mod path_memory;
@@ -157,7 +158,7 @@ impl Bem3d {
     ) -> Result<PreparedBem3d> {
         self.abilities().refuse(NAME, scene)?;
         profile::check(scene)?;
-        profile::check_layer(scene)?;
+        medium::check_layer(scene)?;
         if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
             return Err(Error::domain("tolerance", self.tolerance, "a number in (0, 1)"));
         }

@@ -1,5 +1,6 @@
 //! One surface, ready to be loaded.
 
+use super::medium;
 use super::memory::IndentationMemory;
 use super::options::{Bem3d, Method, NAME};
 use super::profile;
@@ -134,8 +135,8 @@ impl PreparedSurface {
         let nondimensional = Nondimensionalisation::new(scene.contact_modulus, length, height)?;
         let defined = z.len() - map.undefined();
         let mean = sum_of_pairs(&z, &z, |z, _| if z.is_finite() { z } else { 0.0 }) / defined as f64;
-        let medium = profile::medium(scene, length);
-        profile::check_thickness(scene, medium, length)?;
+        let medium = medium::of(scene, length);
+        medium::check_thickness(scene, medium, length)?;
         let mut problem = Problem::recorded(grid, Arc::new(z), medium, tuning, recorder);
         problem.nested = options.method != Method::SingleLevel;
         problem.operators.two_levels = problem.nested;

@@ -1,0 +1,52 @@
+//! The body under the surface of a scene: a half-space, a half-plane or a layer on a base.
+
+use super::options::NAME;
+use crate::kernel::{LayerOnGrid, LayerSymbol, Medium};
+use contact_model::{Boundary, Conductance, Error, Result, Scene, Surface};
+
+/// The body under a scene's surface: under a profile with free boundaries a half-plane. With periodic ones
+/// the kernel of one row is that of plane strain by itself, because a pressure that is periodic with one row
+/// does not vary along y. Lengths of a layer are counted in `length`, the mean side of a cell.
+pub(super) fn of(scene: &Scene, length: f64) -> Medium {
+    match (&scene.surface, scene.effects.boundary, scene.effects.layer) {
+        (Surface::Profile(_), Boundary::Free, _) => Medium::HalfPlane,
+        (_, boundary, Some(layer)) => {
+            let symbol = LayerSymbol::new(&layer);
+            let share = scene.contact_modulus / layer.modulus();
+            Medium::Layer(LayerOnGrid { thickness: layer.thickness / length, share, symbol }, boundary)
+        }
+        (_, boundary, None) => boundary.into(),
+    }
+}
+
+/// Refuses outputs that a layer does not have.
+///
+/// # Errors
+/// [`Error::Unsupported`] for a conductance.
+pub(super) fn check_layer(scene: &Scene) -> Result<()> {
+    if scene.effects.layer.is_some() && scene.outputs.conductance != Conductance::Off {
+        let what =
+            "a conductance of a layered body: it follows from the stiffness of homogeneous half-spaces";
+        return Err(Error::unsupported(NAME, what));
+    }
+    Ok(())
+}
+
+/// Smallest compliance of a layer for waves of two cells, over that of a half-space. The layer is what is left of a
+/// half-space, and rounding of 1e-13 of it is then a millionth of the layer.
+const LEAST_COMPLIANCE: f64 = 1e-7;
+
+/// Refuses a layer so thin beside the cells that rounding hides it.
+///
+/// # Errors
+/// [`Error::Domain`] with the thickness.
+pub(super) fn check_thickness(scene: &Scene, medium: Medium, length: f64) -> Result<()> {
+    let (Medium::Layer(on_grid, _), Some(layer)) = (medium, scene.effects.layer) else { return Ok(()) };
+    if 1.0 + on_grid.excess(std::f64::consts::PI) >= LEAST_COMPLIANCE {
+        return Ok(());
+    }
+    let expected = format!(
+        "more beside cells of {length}: on a rigid base so thin a layer yields so little that rounding hides it"
+    );
+    Err(Error::domain("thickness of the layer", layer.thickness, expected))
+}
