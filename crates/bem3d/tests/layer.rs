@@ -168,3 +168,29 @@ fn what_a_layer_cannot_do_is_refused_by_name() {
         refused(words, &|scene| scene.effects.layer = Some(change));
     }
 }
+
+/// A coating a hundred times as stiff as its base is solved at any thickness. At ten thousand some are not, and then
+/// the best state comes as an error with its residuals.
+#[test]
+fn hard_coatings_are_solved_or_say_that_they_are_not() {
+    for (young, all) in [(1e-2, true), (1e-4, false)] {
+        for thickness in [0.004, 0.04, 0.4] {
+            for boundary in [Boundary::Free, Boundary::Periodic] {
+                let base = LayerBase::HalfSpace { young, poisson: 0.3 };
+                let mut scene = scene(rough(), Layer { thickness, young: 1.0, poisson: 0.3, base });
+                scene.effects.boundary = boundary;
+                let mut contact =
+                    ContactModel::prepare(&Bem3d { cells: 64, ..Bem3d::default() }, &scene, 3).unwrap();
+                for force in [1e-7, 1e-6, 1e-5] {
+                    match contact.solve(Load::force(force)) {
+                        Ok(state) => assert!(state.report.certificate.duality_gap <= 1e-6),
+                        Err(Error::NotConverged { best }) if !all => {
+                            assert!(best.report.certificate.duality_gap > 1e-6)
+                        }
+                        Err(error) => panic!("{young} {thickness} {boundary:?} {force}: {error}"),
+                    }
+                }
+            }
+        }
+    }
+}

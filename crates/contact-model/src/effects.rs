@@ -225,11 +225,11 @@ pub struct Layer {
     pub young: f64,
     /// Its Poisson's ratio, in [0, 1/2].
     pub poisson: f64,
-    /// What bears it.
+    /// The base below it.
     pub base: LayerBase,
 }
 
-/// What bears a layer.
+/// The base below a layer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum LayerBase {

@@ -7,7 +7,8 @@ use std::sync::Arc;
 
 /// Finds the cells with `z < d`.
 ///
-/// Outside them the gap `u + z - d` is positive because u is not negative: they need no check and no storage.
+/// Outside them the gap `u + z - d` is positive where u is not negative: they need no check and no storage. A surface
+/// that may rise beside a load ([`crate::kernel::Kernel::may_bulge`]) takes all cells, with an infinite d.
 /// Undefined points have an infinite z and are never among them.
 #[derive(Debug)]
 pub struct Candidates {

@@ -7,7 +7,6 @@ use super::residuals::ContactGap;
 use super::residuals::Residuals;
 use super::state::{Continuation, Control, Guess, Limits, Problem, Solved};
 use crate::geometry::CellSet;
-use crate::kernel::Evidence;
 use crate::law::{Descent, descend};
 use crate::linear::{Factor, Fixed};
 use crate::parts::{Part, Recorder};
@@ -279,9 +278,8 @@ impl<'a> Solver<'a> {
         let Problem { candidates, operators, .. } = &mut **problem;
         let (kept, recorder) = (operators.tuning().kept_candidates, operators.recorder().clone());
         let mut before = measured.take();
-        // A body that bulges beside a load may touch cells above the plane: all of them are candidates.
-        let bulges = operators.table().kernel().inverse_m_matrix() == Evidence::Violated;
-        let reach = if bulges { f64::INFINITY } else { *reach };
+        // Where the surface may rise beside a load, all cells are candidates.
+        let reach = if operators.table().kernel().may_bulge() { f64::INFINITY } else { *reach };
         // Later contact sets are subsets of the candidates that the first one is joined to.
         recorder.timed(Part::Sets, || {
             if state.checked.is_empty() || !(kept * state.reach..=KEPT_REACH * state.reach).contains(&reach) {

@@ -47,9 +47,14 @@ pub trait Kernel<const E: usize>: fmt::Debug + Any + Send + Sync {
 
     /// Whether the inverse of the matrix of a set of cells has negative entries off its diagonal only, with a
     /// constant in all entries that is large enough where displacements are measured from their mean. Then a
-    /// contact shrinks when it is unloaded, no cell above the plane touches, and equilibria of an attraction that rises are ordered. The constant
-    /// changes nothing under a given force.
+    /// contact shrinks when it is unloaded, no cell above the plane touches, and equilibria of an attraction that
+    /// rises are ordered. The constant changes nothing under a given force.
     fn inverse_m_matrix(&self) -> Evidence;
+
+    /// Whether the surface may rise beside a load, so that cells above the undeformed plane may touch.
+    fn may_bulge(&self) -> bool {
+        self.inverse_m_matrix() == Evidence::Violated
+    }
 }
 
 /// What is known of a property that was not proved.

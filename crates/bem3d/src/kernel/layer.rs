@@ -10,6 +10,7 @@ use super::layer_flux::LayerFlux;
 use super::layer_symbol::LayerSymbol;
 use super::love::influence_row;
 use super::period::Period;
+use super::periodic::raised_above_zero;
 use super::symbol::Parity;
 use super::waves::{Integrand, excess_symbol, symbol, symbol_at};
 use crate::geometry::Grid;
@@ -28,7 +29,8 @@ pub struct LayerOnGrid {
 }
 
 impl LayerOnGrid {
-    /// What the base changes of the displacement under a wave, in units of `2 pi c/(pi E*)` over the wave.
+    /// The displacement under a wave of pressure less that of two half-spaces, relative to the latter. The wave is in
+    /// radians over c.
     pub fn excess(&self, wave: f64) -> f64 {
         self.share * self.symbol.excess(wave * self.thickness)
     }
@@ -45,13 +47,11 @@ pub struct LayeredBody {
     pub layer: LayerOnGrid,
 }
 
-/// The constant of a periodic kernel over its depth and over `1/N`, as of a half-space.
-const SHIFT: f64 = 2.0;
-/// The same for kernels that are deeper.
-const SHIFT_OVER_DEPTH: f64 = 1.25;
+/// Waves along each direction at which the smallest response is looked for.
+const SAMPLED_WAVES: usize = 4;
 
 impl LayeredBody {
-    /// What the base changes at the lags `(0 .., y)`.
+    /// Adds the difference between the layer on its base and a half-space at the lags `(0 .., y)`.
     fn add_excess(&self, flux: &LayerFlux, y: usize, row: &mut [f64]) {
         let Self { grid, layer, .. } = self;
         let ((a, b), h) = (grid.cell(), layer.thickness);
@@ -82,10 +82,7 @@ impl LayeredBody {
     fn period(&self) -> Period<1> {
         let grid = self.grid;
         let waves = self.waves(grid);
-        let period = Period::from_waves(grid, self.parities(), [waves]);
-        let square = SHIFT / (grid.count() as f64).sqrt();
-        let depth = -period.lowest(0).min(0.0);
-        let period = period.raised_by(square.max(SHIFT_OVER_DEPTH * depth));
+        let period = raised_above_zero(Period::from_waves(grid, self.parities(), [waves]), grid);
         if grid.columns == grid.rows && grid.has_square_cells() { period.symmetric() } else { period }
     }
 }
@@ -116,15 +113,17 @@ impl Kernel<1> for LayeredBody {
         }))
     }
 
-    /// An estimate: the response to the checkerboard and to the longest wave of a map, which of a layer on a rigid
-    /// base may be the stiffest.
+    /// The response to the longest waves of a map and to some waves between them and the checkerboard, less a tenth: an
+    /// estimate, which a test compares with the eigenvalues of small maps.
     fn smallest_eigenvalue(&self) -> f64 {
         let Grid { columns, rows, .. } = self.grid;
-        let longest = |cells: usize| PI / cells.max(2) as f64;
-        [(PI, PI), (longest(columns), 0.0), (0.0, longest(rows))]
-            .map(|(x, y)| symbol_at(self.grid, |wave| self.layer.excess(wave), (x, y)))
-            .into_iter()
-            .fold(f64::INFINITY, f64::min)
+        let waves = |cells: usize| {
+            let longest = PI / cells.max(2) as f64;
+            (1..=SAMPLED_WAVES).map(|k| PI * k as f64 / SAMPLED_WAVES as f64).chain([0.0, longest])
+        };
+        let all = waves(columns).flat_map(|x| waves(rows).map(move |y| (x, y)));
+        let response = |waves| symbol_at(self.grid, |wave| self.layer.excess(wave), waves);
+        0.9 * all.filter(|&(x, y)| x + y > 0.0).map(response).fold(f64::INFINITY, f64::min)
     }
 
     fn inverse_m_matrix(&self) -> Evidence {
@@ -172,6 +171,39 @@ mod tests {
             (0.2, half_space(0.2, 1e4, 0.5)),
             (0.5, half_space(0.5, 1e-4, 0.0)),
         ]
+    }
+
+    /// The smallest eigenvalue of the matrix of a whole map, by powers of its distance from a larger one, is not below
+    /// the estimate.
+    #[test]
+    fn no_map_has_a_smaller_eigenvalue() {
+        for (poisson, base) in bases() {
+            for thickness in [0.3, 1.0, 5.0] {
+                let grid = Grid { columns: 9, rows: 7, stretch: 1.2 };
+                let body = body(grid, Boundary::Free, thickness, base, poisson);
+                let (rows, cells) = (rows(&body), grid.count());
+                let entry = |i: usize, j: usize| rows[(i / 9).abs_diff(j / 9)][(i % 9).abs_diff(j % 9)];
+                let product = |v: &[f64]| -> Vec<f64> {
+                    (0..cells).map(|i| (0..cells).map(|j| entry(i, j) * v[j]).sum()).collect()
+                };
+                let largest = (0..cells)
+                    .map(|i| (0..cells).map(|j| entry(i, j).abs()).sum::<f64>())
+                    .fold(0.0, f64::max);
+                let mut v: Vec<f64> = (0..cells).map(|i| ((i * i) as f64).sin()).collect();
+                for _ in 0..4000 {
+                    let image = product(&v);
+                    v.iter_mut().zip(image).for_each(|(v, image)| *v = largest * *v - image);
+                    let norm = v.iter().map(|v| v * v).sum::<f64>().sqrt();
+                    v.iter_mut().for_each(|v| *v /= norm);
+                }
+                let smallest: f64 = product(&v).iter().zip(&v).map(|(a, b)| a * b).sum();
+                let estimate = body.smallest_eigenvalue();
+                assert!(
+                    estimate > 0.0 && estimate <= smallest,
+                    "{base:?} {thickness}: {estimate} {smallest}"
+                );
+            }
+        }
     }
 
     /// The point force itself, integrated over the cell in both directions.

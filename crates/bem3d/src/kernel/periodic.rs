@@ -39,13 +39,18 @@ impl PeriodicHalfSpace {
     fn period(self) -> Period<1> {
         let Self { grid } = self;
         let period = Period::from_waves(grid, self.parities(), [symbol(grid, Integrand::Normal)]);
-        let square = SHIFT / (grid.count() as f64).sqrt();
         if grid.columns == grid.rows && grid.has_square_cells() {
-            return period.raised_by(square).symmetric();
+            return period.raised_by(SHIFT / (grid.count() as f64).sqrt()).symmetric();
         }
-        let depth = -period.lowest(0).min(0.0);
-        period.raised_by(square.max(SHIFT_OVER_DEPTH * depth))
+        raised_above_zero(period, grid)
     }
+}
+
+/// A kernel of zero mean with the constant that makes every entry positive.
+pub(super) fn raised_above_zero(period: Period<1>, grid: Grid) -> Period<1> {
+    let square = SHIFT / (grid.count() as f64).sqrt();
+    let depth = -period.lowest(0).min(0.0);
+    period.raised_by(square.max(SHIFT_OVER_DEPTH * depth))
 }
 
 impl Kernel<1> for PeriodicHalfSpace {

@@ -37,7 +37,7 @@ impl From<Boundary> for Medium {
 }
 
 impl Medium {
-    /// The same on cells whose side is so many times as large: lengths of a medium are counted in it.
+    /// The same medium on a coarser grid, whose cells have `times` the side: a medium counts lengths in that side.
     pub fn on_larger_cells(self, times: f64) -> Self {
         match self {
             Self::Layer(layer, boundary) => {
@@ -90,6 +90,7 @@ impl CouplingTable {
 pub struct KernelTable<const E: usize> {
     kernel: Box<dyn Kernel<E>>,
     coefficients: OnceLock<Coefficients<E>>,
+    smallest_eigenvalue: OnceLock<f64>,
     rows: Vec<OnceLock<Box<[[f64; E]]>>>,
     double: Mutex<Kept<[f64; E]>>,
     single: Mutex<Kept<[f32; E]>>,
@@ -117,6 +118,7 @@ impl<const E: usize> KernelTable<E> {
         let table = Arc::new(Self {
             kernel: Box::new(kernel),
             coefficients: OnceLock::new(),
+            smallest_eigenvalue: OnceLock::new(),
             rows,
             double: Mutex::default(),
             single: Mutex::default(),
@@ -159,7 +161,7 @@ impl<const E: usize> KernelTable<E> {
 
     /// A lower bound of the eigenvalues of the kernel on every set of cells.
     pub fn smallest_eigenvalue(&self) -> f64 {
-        self.kernel.smallest_eigenvalue()
+        *self.smallest_eigenvalue.get_or_init(|| self.kernel.smallest_eigenvalue())
     }
 
     /// The largest displacement of a cell along its own unit traction.

@@ -85,8 +85,8 @@ fn at_waves(grid: Grid, alias: impl Fn(f64, f64) -> f64, whole: impl Fn(f64, f64
     symbol
 }
 
-/// What a base changes of the symbol of a half-space at the waves of a grid, in the same order: `excess(q)/|q|` in the
-/// place of `1/|q|`. The excess falls off beyond `1/length`.
+/// The difference between the symbols of a layer and of a half-space at the waves of a grid, in the order of [`symbol`]:
+/// it has `excess(q)/|q|` where that has `1/|q|`. The excess falls off beyond `1/length`.
 ///
 /// Waves that the grid does not distinguish are few where the length is a cell or more, and are summed as they are.
 /// Beside larger cells the excess changes slowly from one of them to the next, and they are an alternating sum.

@@ -274,6 +274,10 @@ impl PreparedSurface {
     /// An estimate of the share of the cells that a load brings into contact.
     fn expected_contact(&self, load: NormalLoad) -> f64 {
         let z = self.problem.candidates.z();
+        if self.problem.operators.table().kernel().may_bulge() {
+            // The gap is evaluated on all cells.
+            return 1.0;
+        }
         match load {
             // Contact lies within the bearing area.
             NormalLoad::Approach(d) => {

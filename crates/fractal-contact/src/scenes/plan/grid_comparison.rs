@@ -77,8 +77,8 @@ fn errors(
     errors
 }
 
-/// The share of the counted area that its correction for the cells at the boundary takes away. The area of a few
-/// cells may be the same on three grids by chance, and their differences then say nothing of its error.
+/// The relative difference between the counted area and the one corrected for the cells at its boundary. A few cells in
+/// contact may have the same area on all three grids although the area is far from its limit.
 fn least_area_error(fine: &GridNumbers) -> Option<f64> {
     let (area, corrected) = (fine.get("area")?, fine.get("area_corrected")?);
     (*area > 0.0).then(|| (1.0 - corrected / area).abs())
