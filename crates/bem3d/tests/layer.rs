@@ -185,7 +185,7 @@ fn hard_coatings_are_solved_or_say_that_they_are_not() {
                     match contact.solve(Load::force(force)) {
                         Ok(state) => assert!(state.report.certificate.duality_gap <= 1e-6),
                         Err(Error::NotConverged { best }) if !all => {
-                            assert_ne!(best.report.status, Status::Converged)
+                            assert_ne!(best.report.status, bem3d::Status::Converged);
                         }
                         Err(error) => panic!("{young} {thickness} {boundary:?} {force}: {error}"),
                     }

@@ -194,7 +194,9 @@ mod tests {
                     let image = product(&v);
                     v.iter_mut().zip(image).for_each(|(v, image)| *v = largest * *v - image);
                     let norm = v.iter().map(|v| v * v).sum::<f64>().sqrt();
-                    v.iter_mut().for_each(|v| *v /= norm);
+                    for v in &mut v {
+                        *v /= norm;
+                    }
                 }
                 let smallest: f64 = product(&v).iter().zip(&v).map(|(a, b)| a * b).sum();
                 let estimate = body.smallest_eigenvalue();
