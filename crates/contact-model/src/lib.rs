@@ -91,7 +91,7 @@ pub use pair::{Body, Pair};
 pub use patches::Patches;
 pub use pull_off::LargestPull;
 pub use quantities::{Output, Outputs};
-pub use rheology::{PronySeries, Relaxing, Rheology};
+pub use rheology::{PronySeries, RelaxationSpectrum, Relaxing, RelaxingRate, Rheology};
 pub use scaling::{ScaledState, Scaling};
 pub use scene::{Amplitude, Scene, SelfAffine, Surface, line_length};
 pub use state::{

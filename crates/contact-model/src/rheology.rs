@@ -1,6 +1,7 @@
 //! Time dependence of the material.
 
 use crate::error::{Error, Result, non_negative, positive};
+use crate::pair::{Body, Pair};
 
 /// Time dependence of the material: `F/F_elastic` after a step of the approach is `E*(t)/E*`, with E* the
 /// scene's modulus.
@@ -54,6 +55,103 @@ impl Rheology {
         }
         Ok(())
     }
+
+    /// The relaxation of a material with the scene's modulus; `None` for an elastic one.
+    ///
+    /// # Errors
+    /// As [`Rheology::validate`]; [`Error::Domain`] for a time `4 eta/E*` or a rate that no `f64` holds.
+    pub fn spectrum(&self, contact_modulus: f64) -> Result<Option<RelaxationSpectrum>> {
+        self.validate()?;
+        let time = |viscosity: f64| {
+            let time = 4.0 * (viscosity / contact_modulus);
+            if time.is_normal() && time.recip().is_normal() {
+                Ok(time)
+            } else {
+                Err(Error::not_representable("4 viscosity/modulus", time))
+            }
+        };
+        let spectrum = match self {
+            Self::Elastic => return Ok(None),
+            Self::KelvinVoigt { viscosity } => RelaxationSpectrum::of(1.0, time(*viscosity)?, &[]),
+            Self::Maxwell { viscosity } => {
+                RelaxationSpectrum::of(0.0, 0.0, &[Relaxing { weight: 1.0, time: time(*viscosity)? }])
+            }
+            Self::StandardSolid { arm } => RelaxationSpectrum::of(1.0, 0.0, &[*arm]),
+            Self::Prony(series) => RelaxationSpectrum::of(1.0, 0.0, series.arms()),
+        };
+        if spectrum.arms.iter().all(|arm| arm.rate.is_normal() && arm.weight.is_finite()) {
+            Ok(Some(spectrum))
+        } else {
+            Err(Error::not_representable("1/relaxation time", f64::INFINITY))
+        }
+    }
+
+    /// Checks that two bodies are a rigid one and one that deforms, whose viscosities mean what they say.
+    ///
+    /// # Errors
+    /// [`Error::Unsupported`] by `model` for two bodies that deform; [`Error::Domain`] for a viscosity of a material
+    /// that is not incompressible.
+    pub fn check_pair(&self, pair: &Pair, model: &'static str) -> Result<()> {
+        /// A Poisson's ratio may have been rounded.
+        const SAME: f64 = 1e-9;
+        let (Pair { first: Body::Rigid, second: body } | Pair { first: body, second: Body::Rigid }) = pair
+        else {
+            return Err(Error::unsupported(model, "two bodies that deform (one has to be rigid)"));
+        };
+        match (body, self) {
+            (Body::Elastic { poisson, .. }, Self::KelvinVoigt { .. } | Self::Maxwell { .. })
+                if (poisson - 0.5).abs() > SAME =>
+            {
+                let expected =
+                    "1/2, for which viscosities are meant (a standard solid or Prony series has none)";
+                Err(Error::domain("poisson", *poisson, expected))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// How the modulus of a material relaxes, over the scene's E*: `E*(t)/E* = e + sum w_i exp(-r_i t) + v delta(t)`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RelaxationSpectrum {
+    /// e, 0 for a fluid.
+    pub equilibrium: f64,
+    /// v, a time: the dashpot of Kelvin and Voigt.
+    pub viscous: f64,
+    /// Arms with different rates, in ascending order.
+    pub arms: Vec<RelaxingRate>,
+}
+
+/// An arm that relaxes, by its rate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RelaxingRate {
+    /// Its stiffness over E*, > 0.
+    pub weight: f64,
+    /// One over its relaxation time.
+    pub rate: f64,
+}
+
+impl RelaxationSpectrum {
+    fn of(equilibrium: f64, viscous: f64, relaxing: &[Relaxing]) -> Self {
+        let mut arms: Vec<RelaxingRate> = relaxing
+            .iter()
+            .filter(|arm| arm.weight > 0.0)
+            .map(|arm| RelaxingRate { weight: arm.weight, rate: arm.time.recip() })
+            .collect();
+        arms.sort_by(|a, b| a.rate.total_cmp(&b.rate));
+        // Equal times are one arm.
+        arms.dedup_by(|next, kept| {
+            let same = next.rate <= kept.rate;
+            kept.weight += if same { next.weight } else { 0.0 };
+            same
+        });
+        Self { equilibrium, viscous, arms }
+    }
+
+    /// Whether a jump of the approach takes an infinite force.
+    pub fn is_stiff(&self) -> bool {
+        self.viscous > 0.0
+    }
 }
 
 /// An arm that relaxes: a spring and a dashpot in series, beside the spring that remains.
@@ -80,7 +178,7 @@ impl Relaxing {
 /// Relaxing arms with different times, at most [`PronySeries::MOST`] of them.
 ///
 /// The number of places is fixed so that [`crate::Effects`] can be copied like a number; measured series over
-/// four decades of time have four to twelve terms.
+/// four decades of time have four to twelve terms, and fits of master curves up to fifty.
 ///
 /// ```
 /// use contact_model::{PronySeries, Relaxing};
@@ -89,15 +187,21 @@ impl Relaxing {
 /// assert!(PronySeries::new(&[Relaxing { weight: 1.0, time: 0.0 }]).is_err());
 /// # Ok::<(), contact_model::Error>(())
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PronySeries {
     arms: [Relaxing; Self::MOST],
     count: usize,
 }
 
+impl Default for PronySeries {
+    fn default() -> Self {
+        Self { arms: [Relaxing { weight: 0.0, time: 0.0 }; Self::MOST], count: 0 }
+    }
+}
+
 impl PronySeries {
     /// Most arms that a series can have.
-    pub const MOST: usize = 16;
+    pub const MOST: usize = 64;
 
     /// A series of these arms.
     ///
@@ -139,7 +243,32 @@ mod tests {
         let arm = Relaxing { weight: -1.0, time: 1.0 };
         assert!(Rheology::StandardSolid { arm }.validate().is_err() && PronySeries::new(&[arm]).is_err());
         let arm = Relaxing { weight: 0.0, time: 1.0 };
-        assert!(PronySeries::new(&[arm; 16]).is_ok_and(|s| s.arms() == [arm; 16]));
-        assert!(matches!(PronySeries::new(&[arm; 17]), Err(Error::Shape { found: 17, .. })));
+        assert!(PronySeries::new(&[arm; 64]).is_ok_and(|s| s.arms() == [arm; 64]));
+        assert!(matches!(PronySeries::new(&[arm; 65]), Err(Error::Shape { found: 65, .. })));
+    }
+
+    #[test]
+    fn times_out_of_range_are_errors() {
+        assert!(Rheology::Maxwell { viscosity: 1e300 }.spectrum(1e-300).is_err());
+        assert!(Rheology::Maxwell { viscosity: -1.0 }.spectrum(1.0).is_err());
+        assert!(Rheology::Elastic.spectrum(1.0).unwrap().is_none());
+        let arm = Relaxing { weight: 1.0, time: 1e-309 };
+        assert!(Rheology::StandardSolid { arm }.spectrum(1.0).is_err());
+    }
+
+    #[test]
+    fn a_spectrum_has_each_rate_once() {
+        let arms =
+            [(1.0, 2.0), (0.0, 5.0), (2.0, 2.0), (0.5, 4.0)].map(|(weight, time)| Relaxing { weight, time });
+        let series = Rheology::Prony(PronySeries::new(&arms).unwrap());
+        let spectrum = series.spectrum(7.0).unwrap().unwrap();
+        let rates: Vec<_> = spectrum.arms.iter().map(|arm| (arm.weight, arm.rate)).collect();
+        assert_eq!((spectrum.equilibrium, spectrum.is_stiff()), (1.0, false));
+        assert_eq!(rates, [(0.5, 0.25), (3.0, 0.5)]);
+        // Viscosities of an incompressible body in shear: a time eta/G with G = E*/4.
+        let fluid = Rheology::Maxwell { viscosity: 6.0 }.spectrum(4.0).unwrap().unwrap();
+        assert_eq!((fluid.equilibrium, fluid.arms[0].rate), (0.0, 1.0 / 6.0));
+        let solid = Rheology::KelvinVoigt { viscosity: 6.0 }.spectrum(4.0).unwrap().unwrap();
+        assert!(solid.is_stiff() && solid.viscous == 6.0 && solid.arms.is_empty());
     }
 }

@@ -6,7 +6,7 @@ mod normal;
 use self::normal::{NAME, Normal};
 use crate::axisymmetric::RoundContact;
 use crate::material::ViscoelasticMaterial;
-use crate::relaxation::{Relaxation, check_pair};
+use crate::relaxation::Relaxation;
 use crate::slip::Springs;
 use crate::tabulated::{Node, Tabulated};
 use contact_model::{
@@ -216,44 +216,40 @@ impl<M: ContactModel> ContactModel for Equivalent<M> {
             return Err(Error::unsupported(NAME, what));
         }
         self.abilities().refuse(NAME, scene)?;
-        let memory =
-            match (friction.law(), ViscoelasticMaterial::new(&rheology, scene.contact_modulus, NAME)?) {
-                (Some(FrictionLaw { coefficient, .. }), _) => {
-                    let Some(pair) = scene.pair else {
-                        let what = "a scene without both bodies: friction needs their shear moduli";
-                        return Err(Error::unsupported(NAME, what));
-                    };
-                    let shear = pair.shear_modulus()? / scene.contact_modulus;
-                    let table = Arc::new(Tabulated::new(&[])?);
-                    EquivalentMemory::Slip {
-                        springs: Springs::new(table, coefficient, shear),
-                        coefficient,
-                        time: 0.0,
-                    }
+        let memory = match (friction.law(), rheology.spectrum(scene.contact_modulus)?) {
+            (Some(FrictionLaw { coefficient, .. }), _) => {
+                let Some(pair) = scene.pair else {
+                    let what = "a scene without both bodies: friction needs their shear moduli";
+                    return Err(Error::unsupported(NAME, what));
+                };
+                let shear = pair.shear_modulus()? / scene.contact_modulus;
+                let table = Arc::new(Tabulated::new(&[])?);
+                EquivalentMemory::Slip {
+                    springs: Springs::new(table, coefficient, shear),
+                    coefficient,
+                    time: 0.0,
                 }
-                (None, Some(material)) => {
-                    if let Some(pair) = &scene.pair {
-                        check_pair(pair, &rheology, NAME)?;
-                    }
-                    if scene.outputs.pressure {
-                        return Err(Error::unsupported(
-                            NAME,
-                            "a pressure field with rheology (M's is elastic)",
-                        ));
-                    }
-                    if scene.outputs.stiffness || scene.outputs.stiffness_fixed_area {
-                        let what = "the stiffness with rheology (it depends on how fast one pushes)";
-                        return Err(Error::unsupported(NAME, what));
-                    }
-                    EquivalentMemory::Relax(Relaxation::new(material, NAME))
+            }
+            (None, Some(spectrum)) => {
+                if let Some(pair) = &scene.pair {
+                    rheology.check_pair(pair, NAME)?;
                 }
-                (None, None) => {
-                    return Err(Error::unsupported(
-                        NAME,
-                        "an elastic contact without friction (nothing to remember)",
-                    ));
+                if scene.outputs.pressure {
+                    return Err(Error::unsupported(NAME, "a pressure field with rheology (M's is elastic)"));
                 }
-            };
+                if scene.outputs.stiffness || scene.outputs.stiffness_fixed_area {
+                    let what = "the stiffness with rheology (it depends on how fast one pushes)";
+                    return Err(Error::unsupported(NAME, what));
+                }
+                EquivalentMemory::Relax(Relaxation::new(ViscoelasticMaterial::new(spectrum), NAME))
+            }
+            (None, None) => {
+                return Err(Error::unsupported(
+                    NAME,
+                    "an elastic contact without friction (nothing to remember)",
+                ));
+            }
+        };
         Ok(Box::new(PreparedEquivalent { normal: self.normal(scene, seed)?, memory }))
     }
 }

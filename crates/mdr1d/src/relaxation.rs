@@ -4,7 +4,7 @@
 use crate::axisymmetric::RoundContact;
 use crate::material::{ViscoelasticMaterial, ViscousMemory};
 use crate::shape::Shape;
-use contact_model::{Body, Error, Pair, Result, Rheology, Step};
+use contact_model::{Error, Result, Step};
 use numerics::gauss::Gauss;
 
 /// Current state of a history; lengths in L, forces in E* L^2.
@@ -119,24 +119,6 @@ impl Relaxation {
         let contact = press(memory.load.max(from.memory.load))?;
         let approach = contact.approach.max(from.contact.approach);
         Ok(RelaxedState { time, contact: RoundContact { approach, ..contact }, memory, residual })
-    }
-}
-
-/// One rigid body on a viscoelastic one; viscosities are those of an incompressible one.
-pub(crate) fn check_pair(pair: &Pair, rheology: &Rheology, model: &'static str) -> Result<()> {
-    /// A Poisson's ratio may have been rounded.
-    const SAME: f64 = 1e-9;
-    let (Pair { first: Body::Rigid, second: body } | Pair { first: body, second: Body::Rigid }) = pair else {
-        return Err(Error::unsupported(model, "two bodies that deform (one has to be rigid)"));
-    };
-    match (body, rheology) {
-        (Body::Elastic { poisson, .. }, Rheology::KelvinVoigt { .. } | Rheology::Maxwell { .. })
-            if (poisson - 0.5).abs() > SAME =>
-        {
-            let expected = "1/2, for which viscosities are meant (a standard solid or Prony series has none)";
-            Err(Error::domain("poisson", *poisson, expected))
-        }
-        _ => Ok(()),
     }
 }
 

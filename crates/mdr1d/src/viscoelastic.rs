@@ -3,7 +3,7 @@
 use crate::axisymmetric::Profile;
 use crate::body::RoundBody;
 use crate::material::ViscoelasticMaterial;
-use crate::relaxation::{Relaxation, check_pair};
+use crate::relaxation::Relaxation;
 use contact_model::{
     Abilities, ContactModel, ContactState, Effect, Error, Load, NormalLoad, Normalisation, Output, Paths,
     PreparedContact, Result, ScaledState, Scene, SolveReport, Source, Step, Stop, check_stop,
@@ -87,14 +87,17 @@ impl ContactModel for Viscoelastic {
         }
         self.abilities().refuse(NAME, scene)?;
         let rheology = scene.effects.rheology;
-        let Some(material) = ViscoelasticMaterial::new(&rheology, scene.contact_modulus, NAME)? else {
+        let Some(spectrum) = rheology.spectrum(scene.contact_modulus)? else {
             return Err(Error::unsupported(NAME, "an elastic material (there is nothing to remember)"));
         };
         if let Some(pair) = &scene.pair {
-            check_pair(pair, &rheology, NAME)?;
+            rheology.check_pair(pair, NAME)?;
         }
         let body = RoundBody::required(scene, NAME, "relaxing springs need a round contact")?;
-        Ok(Box::new(PreparedViscoelastic { body, relaxation: Relaxation::new(material, NAME) }))
+        Ok(Box::new(PreparedViscoelastic {
+            body,
+            relaxation: Relaxation::new(ViscoelasticMaterial::new(spectrum), NAME),
+        }))
     }
 }
 
