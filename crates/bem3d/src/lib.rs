@@ -289,7 +289,7 @@ mod tuning;
 // All that a first program needs beside the model itself: scenes, loads, states, height maps, the traits.
 #[doc(no_inline)]
 pub use contact_model::*;
-pub use kernel::love;
+pub use kernel::{PeriodicKernel, love};
 pub use model::{BYTES_PER_CELL, Bem3d, Method, UNRESOLVED_RANGE, solve_bytes};
 
 #[doc(hidden)]

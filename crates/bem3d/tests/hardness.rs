@@ -5,8 +5,7 @@
 use bem3d::*;
 use std::sync::Arc;
 
-const TIGHT: Bem3d =
-    Bem3d { cells: 64, rows: None, tolerance: 1e-9, max_outer_iterations: 200, method: Method::Auto };
+const TIGHT: Bem3d = Bem3d { cells: 64, tolerance: 1e-9, ..Bem3d::DEFAULT };
 
 /// A self-affine surface of rms height 1 with a hardness, and every output.
 fn rough(hardness: Option<f64>, boundary: Boundary) -> Scene {

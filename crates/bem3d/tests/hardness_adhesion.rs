@@ -25,8 +25,7 @@ fn scene(hardness: Option<f64>, work: f64, law: AdhesionLaw, boundary: Boundary)
     scene
 }
 
-const MODEL: Bem3d =
-    Bem3d { cells: 32, rows: None, tolerance: 1e-8, max_outer_iterations: 400, method: bem3d::Method::Auto };
+const MODEL: Bem3d = Bem3d { cells: 32, tolerance: 1e-8, max_outer_iterations: 400, ..Bem3d::DEFAULT };
 
 fn path(scene: &Scene, loads: &[Load]) -> Vec<ContactState> {
     let mut contact = MODEL.prepare(scene, 2).unwrap();

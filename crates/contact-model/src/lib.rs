@@ -96,7 +96,7 @@ pub use scaling::{ScaledState, Scaling};
 pub use scene::{Amplitude, Scene, SelfAffine, Surface, line_length};
 pub use state::{
     AdhesiveState, Branch, Certificate, ContactResolution, ContactState, PlasticState, PullOff, SolveReport,
-    Status, TangentialState,
+    Status, TangentialState, ViscoelasticState,
 };
 pub use step::Step;
 pub use table::{Column, Table};

@@ -48,6 +48,14 @@ impl Nondimensionalisation {
         Ok(Self { contact_modulus, length, height })
     }
 
+    /// The units of a body whose modulus is `factor` times as large.
+    ///
+    /// # Errors
+    /// As [`Nondimensionalisation::new`].
+    pub fn with_modulus_times(self, factor: f64) -> Result<Self> {
+        Self::new(self.contact_modulus * factor, self.length, self.height)
+    }
+
     /// `force / (E* length height)`, dimensionless; infinite or 0 where no `f64` holds it.
     pub fn force_in(self, force: f64) -> f64 {
         product([force, self.contact_modulus.recip(), self.length.recip(), self.height.recip()])

@@ -419,6 +419,9 @@ use QuantityUnit::{One, Si, Word};
 /// A path with adhesion.
 const PULLED: &[AskedBy] = &[Path, Effect("adhesion")];
 
+/// A viscoelastic history.
+const VISCOELASTIC: AskedBy = Effect("rheology");
+
 /// Every quantity, in the order of the columns of tables.
 pub static QUANTITIES: &[StateQuantity] = &quantities! {
     "time" "time" "t" Si("s"); Path; "time at the end of the step"
@@ -574,6 +577,9 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
     "linear_solves" "linear solves" "" One; Always; "linear systems solved"
         { role: Role::Work, average: Average::No, drawn: false }
         => |s, _| s.report.work.linear_solves.into();
+    "time_steps" "steps of time" "" One; VISCOELASTIC; "of a viscoelastic history that is solved cell by cell, since the state before"
+        { role: Role::Work, average: Average::No, drawn: false }
+        => |s, _| s.viscoelastic.map(|v| v.time_steps).into();
     "fields" "fields" "" One; Always; "fields over the grid that the state holds"
         { role: Role::Work, average: Average::No, drawn: false }
         => |s, _| s.report.work.fields.into();
@@ -599,6 +605,27 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
         { role: Role::Residual("a bound of the relative error of the force under a prescribed approach or mean gap; an estimate with adhesion"),
           average: Average::No, drawn: false }
         => |s, _| s.report.certificate.force_error.into();
+    "force_time_error" "error of the force by steps of time" "" One; VISCOELASTIC;
+        "relative difference of the force from that of the same history in steps of time twice as long"
+        { role: Role::Residual("steps of time are short enough for the force: its relative difference from that of steps twice as long"),
+          average: Average::No, drawn: false }
+        => |s, _| s.viscoelastic.map(|v| v.force_time_error).into();
+    "approach_time_error" "error of the approach by steps of time" "" One; AskedBy::All(&[FreeBoundary, VISCOELASTIC]);
+        "relative difference of the approach from that of the same history in steps of time twice as long"
+        { role: Role::Residual("steps of time are short enough for the approach: its relative difference from that of steps twice as long"),
+          average: Average::No, drawn: false }
+        => |s, _| s.approach.and(s.viscoelastic).map(|v| v.distance_time_error).into();
+    "mean_gap_time_error" "error of the mean gap by steps of time" "" One;
+        AskedBy::All(&[AskedBy::Output(Output::MeanGap), VISCOELASTIC]);
+        "relative difference of the mean gap from that of the same history in steps of time twice as long"
+        { role: Role::Residual("steps of time are short enough for the mean gap: its relative difference from that of steps twice as long"),
+          average: Average::No, drawn: false }
+        => |s, _| s.mean_gap.and(s.viscoelastic).map(|v| v.distance_time_error).into();
+    "area_time_error" "error of the area by steps of time" "" One; AskedBy::All(&[AskedBy::Output(Output::Area), VISCOELASTIC]);
+        "relative difference of the number of cells in contact from that of the same history in steps of time twice as long"
+        { role: Role::Residual("steps of time are short enough for the area: the relative difference of the number of cells from that of steps twice as long"),
+          average: Average::No, drawn: false }
+        => |s, _| s.viscoelastic.map(|v| v.area_time_error).into();
     "equilibrium" "equilibrium" "" One; Effect("adhesion");
         "largest difference of an attraction from the law of its gap, over the traction in contact"
         { role: Role::Residual("the attraction of each cell is what the law says of its gap: the largest difference, over the largest traction"),

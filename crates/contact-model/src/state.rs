@@ -47,6 +47,8 @@ pub struct ContactState {
     pub plastic: Option<PlasticState>,
     /// The adhesive part, for contacts with adhesion that are solved cell by cell.
     pub adhesive: Option<AdhesiveState>,
+    /// The viscoelastic part, for histories that are solved in steps of time.
+    pub viscoelastic: Option<ViscoelasticState>,
     /// The largest pull of the path so far, where a path is followed ([`crate::LargestPull`]) and a load of
     /// it pulled.
     pub pull_off: Option<PullOff>,
@@ -79,6 +81,7 @@ impl ContactState {
             patches: None,
             plastic: None,
             adhesive: None,
+            viscoelastic: None,
             pull_off: None,
             resolution: None,
             contact_radius: None,
@@ -148,6 +151,12 @@ impl ContactState {
     #[must_use]
     pub fn with_adhesive(self, adhesive: impl Into<Option<AdhesiveState>>) -> Self {
         Self { adhesive: adhesive.into(), ..self }
+    }
+
+    /// With a viscoelastic part.
+    #[must_use]
+    pub fn with_viscoelastic(self, viscoelastic: impl Into<Option<ViscoelasticState>>) -> Self {
+        Self { viscoelastic: viscoelastic.into(), ..self }
     }
 
     /// With the resolution of the contact by its cells.
@@ -319,6 +328,34 @@ impl AdhesiveState {
     /// A state on this branch.
     pub fn new(branch: Branch, energy: f64, stability: f64) -> Self {
         Self { branch, energy, stability }
+    }
+}
+
+/// The viscoelastic part of a state, in a history that is solved in steps of time: what the steps cost in accuracy.
+///
+/// The errors are differences from the same history in steps twice as long. They are errors of the steps alone, beside
+/// those of the cells and of the solver.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct ViscoelasticState {
+    /// Relative error of the force; 0 where it is prescribed.
+    pub force_time_error: f64,
+    /// Relative error of the approach, with periodic boundaries of the mean gap; 0 where it is prescribed.
+    pub distance_time_error: f64,
+    /// Relative error of the number of cells in contact.
+    pub area_time_error: f64,
+    /// Number of steps of time since the state before; 0 for a load in no time.
+    pub time_steps: usize,
+}
+
+impl ViscoelasticState {
+    /// The part of a state after this number of steps, with the errors of force, distance and area.
+    pub fn new(
+        [force_time_error, distance_time_error, area_time_error]: [f64; 3],
+        time_steps: usize,
+    ) -> Self {
+        Self { force_time_error, distance_time_error, area_time_error, time_steps }
     }
 }
 

@@ -80,16 +80,13 @@ const fn formula(
 }
 
 const EXACT: &str = "exact, to about 1e-13";
-const BEM3D: Bem3d =
-    Bem3d { cells: 257, rows: None, tolerance: 1e-6, max_outer_iterations: 200, method: bem3d::Method::Auto };
-
 /// Every model of the library. A closed form is one entry here; a model with options has a variant of
 /// `scenes::Numerics` too.
 pub static MODELS: &[ModelRecord] = &[
     ModelRecord {
         has_options: true,
         ..formula(
-            &BEM3D,
+            &Bem3d::DEFAULT,
             ("3D boundary elements", "Bem3d"),
             "Exact contact in three dimensions by boundary elements, free or periodic.",
             "every state is certified to its tolerance; the cells themselves are of first order where a body has edges",
@@ -185,7 +182,7 @@ pub static MODELS: &[ModelRecord] = &[
     ModelRecord {
         has_options: true,
         ..formula(
-            &Equivalent { model: BEM3D, per_decade: 16, decades: 3 },
+            &Equivalent { model: Bem3d::DEFAULT, per_decade: 16, decades: 3 },
             ("equivalent profile", "Equivalent"),
             "Friction or rheology of any surface, on the stiffness over approach of another model.",
             "the normal part is that of the model that presses; friction of round contacts is exact within Cattaneo's and Mindlin's \

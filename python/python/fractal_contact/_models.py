@@ -15,7 +15,7 @@ from ._core import Contact, ContactState, HeightMap
 from ._errors import Error, OutOfMemory, Stopped, domain_error
 from ._inputs import Scene
 from ._numbers import Seed, numbers, steps
-from .typing import Heights, Method
+from .typing import Heights, Method, PeriodicKernel
 
 LOADS = ("force", "approach", "mean_pressure", "mean_gap")
 
@@ -148,6 +148,11 @@ class Bem3d(Model):
         Largest number of outer iterations.
     method : {"auto", "iterative", "single_level"}
         Method by which small linear systems are solved.
+    periodic_kernel : {"cells", "waves"}
+        What the kernel of periodic boundaries is exact for: pressures that are uniform on cells, or waves, as in other
+        programs.
+    time_tolerance : float
+        Largest error that one step of time of a viscoelastic history may add, relative, 1e-3 by default.
 
     Examples
     --------
@@ -175,6 +180,8 @@ class Bem3d(Model):
         tolerance: float | None = None,
         max_outer_iterations: int | None = None,
         method: Method | None = None,
+        periodic_kernel: PeriodicKernel | None = None,
+        time_tolerance: float | None = None,
     ) -> None:
         super().__init__(
             cells=cells,
@@ -182,6 +189,8 @@ class Bem3d(Model):
             tolerance=tolerance,
             max_outer_iterations=max_outer_iterations,
             method=method,
+            periodic_kernel=periodic_kernel,
+            time_tolerance=time_tolerance,
         )
 
     def _check(self, scene: Scene) -> None:

@@ -30,6 +30,7 @@ __all__ = [
     "Heights",
     "Method",
     "Output",
+    "PeriodicKernel",
     "PressOptions",
     "PronyDict",
     "ReadOptions",
@@ -61,6 +62,7 @@ Output = Literal[
 ]
 SurfaceKind = Literal["self_affine", "sphere", "cone", "power_law", "flat_circle", "flat", "sine", "line"]
 Method = Literal["auto", "iterative", "single_level"]
+PeriodicKernel = Literal["cells", "waves"]
 Heights = Literal["gaussian", "exponential"]
 Undefined = Literal["error", "no_contact"]
 Direction = Literal["radial", "x", "y"]

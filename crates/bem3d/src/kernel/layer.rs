@@ -10,12 +10,12 @@ use super::layer_flux::LayerFlux;
 use super::layer_symbol::LayerSymbol;
 use super::love::influence_row;
 use super::period::Period;
-use super::periodic::raised_above_zero;
+use super::periodic::{PeriodicKernel, raised_above_zero};
 use super::symbol::Parity;
-use super::waves::{Integrand, excess_symbol, symbol, symbol_at};
+use super::waves::{Integrand, continuous_symbol, excess_symbol, symbol, symbol_at};
 use crate::geometry::Grid;
 use contact_model::Boundary;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// A layer in the units of a grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,6 +45,8 @@ pub struct LayeredBody {
     pub boundary: Boundary,
     /// The layer.
     pub layer: LayerOnGrid,
+    /// What the kernel of a map that repeats itself is exact for.
+    pub exact_for: PeriodicKernel,
 }
 
 /// Waves along each direction at which the smallest response is looked for.
@@ -73,6 +75,9 @@ impl LayeredBody {
 
     /// The symbol at the waves of a periodic grid, without the mean.
     fn waves(&self, grid: Grid) -> Vec<f64> {
+        if self.exact_for == PeriodicKernel::Waves {
+            return continuous_symbol(grid, |wave| 1.0 + self.layer.excess(wave));
+        }
         let excess = excess_symbol(grid, |wave| self.layer.excess(wave), self.layer.thickness);
         symbol(grid, Integrand::Normal).into_iter().zip(excess).map(|(all, excess)| all + excess).collect()
     }
@@ -122,7 +127,17 @@ impl Kernel<1> for LayeredBody {
             (1..=SAMPLED_WAVES).map(|k| PI * k as f64 / SAMPLED_WAVES as f64).chain([0.0, longest])
         };
         let all = waves(columns).flat_map(|x| waves(rows).map(move |y| (x, y)));
-        let response = |waves| symbol_at(self.grid, |wave| self.layer.excess(wave), waves);
+        let response = |(x, y): (f64, f64)| {
+            let excess = |wave: f64| self.layer.excess(wave);
+            match self.exact_for {
+                PeriodicKernel::Cells => symbol_at(self.grid, excess, (x, y)),
+                PeriodicKernel::Waves => {
+                    let (a, b) = self.grid.cell();
+                    let q = (x / a).hypot(y / b);
+                    TAU * (1.0 + excess(q)) / q
+                }
+            }
+        };
         0.9 * all.filter(|&(x, y)| x + y > 0.0).map(response).fold(f64::INFINITY, f64::min)
     }
 
@@ -142,7 +157,7 @@ mod tests {
     fn body(grid: Grid, boundary: Boundary, thickness: f64, base: LayerBase, poisson: f64) -> LayeredBody {
         let layer = Layer { thickness, young: 1.0, poisson, base };
         let layer = LayerOnGrid { thickness, share: 1.0, symbol: LayerSymbol::new(&layer) };
-        LayeredBody { grid, boundary, layer }
+        LayeredBody { grid, boundary, layer, exact_for: PeriodicKernel::Cells }
     }
 
     /// A base with this shear modulus, over that of the layer.

@@ -27,6 +27,7 @@ pub use definition::{Evidence, Kernel};
 pub use inverse::Inverse;
 pub use layer::LayerOnGrid;
 pub use layer_symbol::LayerSymbol;
+pub use periodic::PeriodicKernel;
 pub use symbol::Symbol;
 pub use table::{CouplingTable, KernelTable, Medium, NormalTable, TangentialTable};
 pub use tensor::{Invertible, Symmetric, Tensor};

@@ -11,7 +11,7 @@ use super::definition::{Coefficients, Evidence, Kernel};
 use super::love::smallest_eigenvalue;
 use super::period::Period;
 use super::symbol::Parity;
-use super::waves::{Integrand, symbol};
+use super::waves::{Integrand, continuous_symbol, symbol};
 use crate::geometry::Grid;
 use contact_model::Boundary;
 
@@ -21,11 +21,46 @@ const SHIFT: f64 = 2.0;
 /// c of other rectangles over the depth of their kernel.
 const SHIFT_OVER_DEPTH: f64 = 1.25;
 
+/// What the kernel of a map that repeats itself is exact for.
+///
+/// Both agree for contacts that are many cells wide. Other programs take waves, so that their contacts of few cells
+/// can be compared with those of waves cell by cell.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum PeriodicKernel {
+    /// Pressures that are uniform on each cell, with the displacements at the centres of cells.
+    #[default]
+    Cells,
+    /// Pressures that are waves as long as two cells or longer: the symbol `2/(E* q)` itself. Its coefficients are
+    /// negative at some lags, so that a cell may rise beside a load.
+    Waves,
+}
+
+impl PeriodicKernel {
+    /// All, in the order of tables.
+    pub const ALL: [Self; 2] = [Self::Cells, Self::Waves];
+
+    /// Its word in scenes and tables.
+    pub fn as_str(self) -> &'static str {
+        match self {
+            Self::Cells => "cells",
+            Self::Waves => "waves",
+        }
+    }
+}
+
+/// The smallest value of the continuous symbol `2 pi/|q|` on the waves of a grid: that of the shortest wave.
+pub(super) fn shortest_wave(grid: Grid) -> f64 {
+    let (a, b) = grid.cell();
+    2.0 / (1.0 / a).hypot(1.0 / b)
+}
+
 /// A half-space under the pressures on its map and on all copies of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PeriodicHalfSpace {
     /// The grid.
     pub grid: Grid,
+    /// What it is exact for.
+    pub exact_for: PeriodicKernel,
 }
 
 impl PeriodicHalfSpace {
@@ -37,8 +72,12 @@ impl PeriodicHalfSpace {
     /// Cost: some 25 multiplications a cell and a real transform of the grid; up to 5000 a row or column more
     /// for oblong cells.
     fn period(self) -> Period<1> {
-        let Self { grid } = self;
-        let period = Period::from_waves(grid, self.parities(), [symbol(grid, Integrand::Normal)]);
+        let Self { grid, exact_for } = self;
+        let waves = match exact_for {
+            PeriodicKernel::Cells => symbol(grid, Integrand::Normal),
+            PeriodicKernel::Waves => continuous_symbol(grid, |_| 1.0),
+        };
+        let period = Period::from_waves(grid, self.parities(), [waves]);
         if grid.columns == grid.rows && grid.has_square_cells() {
             return period.raised_by(SHIFT / (grid.count() as f64).sqrt()).symmetric();
         }
@@ -71,11 +110,17 @@ impl Kernel<1> for PeriodicHalfSpace {
     }
 
     fn smallest_eigenvalue(&self) -> f64 {
-        smallest_eigenvalue(self.grid.stretch)
+        match self.exact_for {
+            PeriodicKernel::Cells => smallest_eigenvalue(self.grid.stretch),
+            PeriodicKernel::Waves => shortest_wave(self.grid),
+        }
     }
 
     fn inverse_m_matrix(&self) -> Evidence {
-        Evidence::Observed
+        match self.exact_for {
+            PeriodicKernel::Cells => Evidence::Observed,
+            PeriodicKernel::Waves => Evidence::Violated,
+        }
     }
 }
 
@@ -86,7 +131,7 @@ mod tests {
     use approx::assert_relative_eq;
 
     fn kernel(columns: usize, rows: usize, stretch: f64) -> Period<1> {
-        PeriodicHalfSpace { grid: Grid { columns, rows, stretch } }.period()
+        PeriodicHalfSpace { grid: Grid { columns, rows, stretch }, exact_for: PeriodicKernel::Cells }.period()
     }
 
     #[test]

@@ -5,7 +5,7 @@ use super::definition::{Coefficients, Kernel};
 use super::half_plane::HalfPlane;
 use super::half_space::HalfSpace;
 use super::layer::{LayerOnGrid, LayeredBody};
-use super::periodic::PeriodicHalfSpace;
+use super::periodic::{PeriodicHalfSpace, PeriodicKernel};
 use super::symbol::{Parity, Symbol};
 use super::tangential::TangentialKernel;
 use super::tensor::Invertible;
@@ -23,16 +23,16 @@ pub enum Medium {
     /// A half-space that is unloaded outside the map.
     HalfSpace,
     /// A half-space with periodic copies of the map.
-    Periodic,
+    Periodic(PeriodicKernel),
     /// A half-plane in plane strain, unloaded outside the line: one row of strips.
     HalfPlane,
     /// A layer on a base, with this boundary of the map.
-    Layer(LayerOnGrid, Boundary),
+    Layer(LayerOnGrid, Boundary, PeriodicKernel),
 }
 
 impl From<Boundary> for Medium {
     fn from(boundary: Boundary) -> Self {
-        if boundary == Boundary::Periodic { Self::Periodic } else { Self::HalfSpace }
+        if boundary == Boundary::Periodic { Self::Periodic(PeriodicKernel::Cells) } else { Self::HalfSpace }
     }
 }
 
@@ -40,8 +40,8 @@ impl Medium {
     /// The same medium on a coarser grid, whose cells have `times` the side: a medium counts lengths in that side.
     pub fn on_larger_cells(self, times: f64) -> Self {
         match self {
-            Self::Layer(layer, boundary) => {
-                Self::Layer(LayerOnGrid { thickness: layer.thickness / times, ..layer }, boundary)
+            Self::Layer(layer, boundary, exact_for) => {
+                Self::Layer(LayerOnGrid { thickness: layer.thickness / times, ..layer }, boundary, exact_for)
             }
             other => other,
         }
@@ -62,9 +62,11 @@ impl NormalTable {
     pub fn shared(grid: Grid, medium: impl Into<Medium>) -> Arc<Self> {
         match medium.into() {
             Medium::HalfSpace => Self::of(HalfSpace { grid }),
-            Medium::Periodic => Self::of(PeriodicHalfSpace { grid }),
+            Medium::Periodic(exact_for) => Self::of(PeriodicHalfSpace { grid, exact_for }),
             Medium::HalfPlane => Self::of(HalfPlane { grid }),
-            Medium::Layer(layer, boundary) => Self::of(LayeredBody { grid, boundary, layer }),
+            Medium::Layer(layer, boundary, exact_for) => {
+                Self::of(LayeredBody { grid, boundary, layer, exact_for })
+            }
         }
     }
 }
@@ -463,8 +465,10 @@ mod tests {
             (Medium::HalfPlane, line),
             (Medium::HalfSpace, plane),
             (Medium::HalfSpace, oblong),
-            (Medium::Periodic, plane),
-            (Medium::Periodic, oblong),
+            (Medium::Periodic(PeriodicKernel::Cells), plane),
+            (Medium::Periodic(PeriodicKernel::Cells), oblong),
+            (Medium::Periodic(PeriodicKernel::Waves), plane),
+            (Medium::Periodic(PeriodicKernel::Waves), oblong),
         ] {
             let table = NormalTable::shared(grid, medium);
             let sets: [&dyn Fn(usize) -> bool; 5] =
@@ -487,7 +491,7 @@ mod tests {
                     let off_diagonal = (0..n * n).filter(|k| k / n != k % n).map(|k| inverse[k]);
                     off_diagonal.fold(f64::MIN, f64::max) <= 1e-12 * largest
                 };
-                let full_period = medium == Medium::Periodic && n == grid.count();
+                let full_period = matches!(medium, Medium::Periodic(_)) && n == grid.count();
                 assert!(!(full_period && negative(&raised(0.0))), "the text says otherwise: {grid:?}");
                 let evidence = table.kernel().inverse_m_matrix();
                 assert!(negative(&inverse) || evidence == Evidence::Violated, "{medium:?} {grid:?}");

@@ -108,6 +108,20 @@ const LARGEST_EXCESS: f64 = 22.0;
 /// From this length over the side of a cell on, each alias is summed.
 const FEW_ALIASES: f64 = 0.5;
 
+/// The symbol `2 pi factor(q)/|q|` of a continuum at the waves of a grid, in the order of [`symbol`]: pressures are waves
+/// too, and no wave stands for others.
+pub(super) fn continuous_symbol(grid: Grid, factor: impl Fn(f64) -> f64) -> Vec<f64> {
+    let (a, b) = grid.cell();
+    at_waves(
+        grid,
+        |_, _| 0.0,
+        |_, x, y| {
+            let q = (x / a).hypot(y / b);
+            TAU * factor(q) / q
+        },
+    )
+}
+
 /// The sum of the excess over a wave (in radians a cell) and its aliases.
 fn excess_at(grid: Grid, excess: impl Fn(f64) -> f64, length: f64, (x, y): (f64, f64)) -> f64 {
     let (a, b) = grid.cell();

@@ -9,6 +9,7 @@ use super::path_memory::{PlaceInLoads, Remembered};
 use super::prepared::{PreparedSurface, Tangent};
 use super::sliding::SurfaceFriction;
 use super::solve_memory::{factor_bytes, solve_bytes};
+use super::viscous::ViscousHistory;
 use crate::active_set::{self, Control, Limits, Solved};
 use crate::geometry::{CellSet, Grid};
 use crate::parts::{Part, Recorder};
@@ -31,6 +32,8 @@ pub struct PreparedBem3d {
     surface: PreparedSurface,
     /// `None` without adhesion.
     adhesion: Option<AdhesivePath>,
+    /// `None` for elastic bodies.
+    viscous: Option<ViscousHistory>,
     place: PlaceInLoads,
 }
 
@@ -44,8 +47,9 @@ impl PreparedBem3d {
     ) -> Result<Self> {
         let mut surface = PreparedSurface::of_map(*model, scene, map, numerics)?;
         let adhesion = AdhesivePath::of(&mut surface, scene.effects.adhesion)?;
+        let viscous = ViscousHistory::of(&surface, scene)?;
         let place = PlaceInLoads { loads: LoadSequence::Single, solved: None, time: 0.0 };
-        Ok(Self { surface, adhesion, place })
+        Ok(Self { surface, adhesion, viscous, place })
     }
 
     /// A load in the units of the surface; with adhesion it may pull.
@@ -62,21 +66,27 @@ impl PreparedBem3d {
         self.surface.scaled_load(load)
     }
 
-    /// The state of a load, with the given relation to other loads.
-    fn at(&mut self, load: ScaledLoad, loads: LoadSequence, stop: Stop<'_>) -> Result<ContactState> {
+    /// The state of a load, with the given relation to other loads, which it reaches in this time.
+    fn at(
+        &mut self,
+        load: ScaledLoad,
+        loads: LoadSequence,
+        duration: f64,
+        stop: Stop<'_>,
+    ) -> Result<ContactState> {
         let stop = &Heard { stop, heard: Cell::new(false) };
         if self.place.loads != loads {
             let solved = self.place.solved.take();
             self.begin(loads);
             if let (LoadSequence::Path, Some(solved)) = (loads, solved)
-                && let Err(error) = self.state_at(solved, loads, stop)
+                && let Err(error) = self.state_at(solved, loads, 0.0, stop)
             {
                 self.begin(LoadSequence::Single);
                 self.place.solved = Some(solved);
                 return Err(error);
             }
         }
-        let state = match self.state_at(load, loads, stop) {
+        let state = match self.state_at(load, loads, duration, stop) {
             // What a solve finds while it is being stopped, such as a pull-off, need not be so.
             Err(error) if stop.stops() && !matches!(error, Error::Stopped { .. }) => {
                 return Err(Interrupted.without_state());
@@ -87,13 +97,25 @@ impl PreparedBem3d {
         Ok(state)
     }
 
-    fn state_at(&mut self, load: ScaledLoad, loads: LoadSequence, stop: Stop<'_>) -> Result<ContactState> {
+    fn state_at(
+        &mut self,
+        load: ScaledLoad,
+        loads: LoadSequence,
+        duration: f64,
+        stop: Stop<'_>,
+    ) -> Result<ContactState> {
         if let (Some(sliding), LoadSequence::Single) = (&mut self.surface.sliding, loads) {
             sliding.begin();
         }
-        let state = match &mut self.adhesion {
-            Some(adhesion) => adhesion.on(&mut self.surface).at(load, loads, stop),
-            None => self.surface.at(load, stop),
+        let state = match (&mut self.adhesion, &mut self.viscous) {
+            (Some(adhesion), _) => adhesion.on(&mut self.surface).at(load, loads, stop),
+            (None, Some(history)) => {
+                if loads == LoadSequence::Single {
+                    history.begin(&mut self.surface);
+                }
+                history.at(&mut self.surface, load, duration, stop)
+            }
+            (None, None) => self.surface.at(load, stop),
         };
         // Those of the next load would depend on them, and the memory is free meanwhile.
         self.surface.forget_plans();
@@ -106,6 +128,9 @@ impl PreparedBem3d {
         self.surface.begin(loads == LoadSequence::Path);
         if let Some(adhesion) = &mut self.adhesion {
             adhesion.last = None;
+        }
+        if let Some(history) = &mut self.viscous {
+            history.begin(&mut self.surface);
         }
     }
 }
@@ -135,7 +160,7 @@ impl PreparedContact for PreparedBem3d {
 
     fn solve_until(&mut self, load: Load, stop: Stop<'_>) -> Result<ContactState> {
         let load = self.scaled_load(load)?;
-        self.at(load, LoadSequence::Single, stop)
+        self.at(load, LoadSequence::Single, 0.0, stop)
     }
 
     /// Cost O(N).
@@ -156,7 +181,7 @@ impl PreparedContact for PreparedBem3d {
             return Err(Error::Stopped { best: None });
         }
         let load = self.scaled_load(step.load)?;
-        let state = match self.at(load, LoadSequence::Path, stop) {
+        let state = match self.at(load, LoadSequence::Path, step.time - time, stop) {
             Err(Error::NotConverged { best }) => {
                 // The last stable state is that of the step before.
                 let time = if best.report.status == Status::PulledOff { self.place.time } else { step.time };
@@ -174,7 +199,8 @@ impl PreparedContact for PreparedBem3d {
 
     fn memory(&self) -> Result<Option<PathMemory>> {
         let adhesive = self.adhesion.as_ref().and_then(|adhesion| adhesion.last.as_ref());
-        PathMemory::of(&Remembered::of(self.place, &self.surface, adhesive)).map(Some)
+        let viscous = self.viscous.as_ref();
+        PathMemory::of(&Remembered::of(self.place, &self.surface, adhesive, viscous)).map(Some)
     }
 
     fn recall(&mut self, memory: &PathMemory) -> Result<()> {
@@ -182,7 +208,7 @@ impl PreparedContact for PreparedBem3d {
         let remembered: Remembered<'_> = memory.read()?;
         let place = remembered.place;
         self.begin(place.loads);
-        if !remembered.recall(&mut self.surface, &mut self.adhesion) {
+        if !remembered.recall(&mut self.surface, &mut self.adhesion, &mut self.viscous) {
             self.restart();
             return Err(PathMemory::unreadable(memory.bytes().len()));
         }
@@ -193,7 +219,7 @@ impl PreparedContact for PreparedBem3d {
 
 impl PreparedSurface {
     /// The state of a load without adhesion. A load that was stopped leaves the surface where it was.
-    fn at(&mut self, load: ScaledLoad, stop: Stop<'_>) -> Result<ContactState> {
+    pub(super) fn at(&mut self, load: ScaledLoad, stop: Stop<'_>) -> Result<ContactState> {
         let last = self.last.clone();
         let found = self.solved_at(load, stop);
         if matches!(found, Err(Error::Stopped { .. })) {

@@ -1,22 +1,42 @@
 //! The body under the surface of a scene: a half-space, a half-plane or a layer on a base.
 
 use super::options::NAME;
-use crate::kernel::{LayerOnGrid, LayerSymbol, Medium};
-use contact_model::{Boundary, Conductance, Error, Result, Scene, Surface};
+use crate::kernel::{LayerOnGrid, LayerSymbol, Medium, PeriodicKernel};
+use contact_model::{Boundary, Conductance, Error, Friction, Result, Scene, Surface};
 
 /// The body under a scene's surface: under a profile with free boundaries a half-plane. With periodic ones
 /// the kernel of one row is that of plane strain by itself, because a pressure that is periodic with one row
 /// does not vary along y. Lengths of a layer are counted in `length`, the mean side of a cell.
-pub(super) fn of(scene: &Scene, length: f64) -> Medium {
+pub(super) fn of(scene: &Scene, exact_for: PeriodicKernel, length: f64) -> Medium {
     match (&scene.surface, scene.effects.boundary, scene.effects.layer) {
         (Surface::Profile(_), Boundary::Free, _) => Medium::HalfPlane,
         (_, boundary, Some(layer)) => {
             let symbol = LayerSymbol::new(&layer);
             let share = scene.contact_modulus / layer.modulus();
-            Medium::Layer(LayerOnGrid { thickness: layer.thickness / length, share, symbol }, boundary)
+            let on_grid = LayerOnGrid { thickness: layer.thickness / length, share, symbol };
+            Medium::Layer(on_grid, boundary, exact_for)
         }
+        (_, Boundary::Periodic, None) => Medium::Periodic(exact_for),
         (_, boundary, None) => boundary.into(),
     }
+}
+
+/// Refuses the kernel of waves where it has no meaning, or where other kernels would have to be of waves too.
+///
+/// # Errors
+/// [`Error::Unsupported`] with free boundaries and with friction.
+pub(super) fn check_kernel(scene: &Scene, exact_for: PeriodicKernel) -> Result<()> {
+    if exact_for == PeriodicKernel::Cells {
+        return Ok(());
+    }
+    if scene.effects.boundary == Boundary::Free {
+        return Err(Error::unsupported(NAME, "a periodic kernel of waves with free boundaries"));
+    }
+    if scene.effects.friction != Friction::Off {
+        let what = "a periodic kernel of waves with friction, whose tangential kernel is one of cells";
+        return Err(Error::unsupported(NAME, what));
+    }
+    Ok(())
 }
 
 /// Refuses outputs that a layer does not have.
@@ -41,7 +61,7 @@ const LEAST_COMPLIANCE: f64 = 1e-7;
 /// # Errors
 /// [`Error::Domain`] with the thickness.
 pub(super) fn check_thickness(scene: &Scene, medium: Medium, length: f64) -> Result<()> {
-    let (Medium::Layer(on_grid, _), Some(layer)) = (medium, scene.effects.layer) else { return Ok(()) };
+    let (Medium::Layer(on_grid, ..), Some(layer)) = (medium, scene.effects.layer) else { return Ok(()) };
     if 1.0 + on_grid.excess(std::f64::consts::PI) >= LEAST_COMPLIANCE {
         return Ok(());
     }

@@ -19,6 +19,7 @@ mod profile;
 mod sliding;
 mod solve_memory;
 mod state;
+mod viscous;
 
 pub use adhesive::UNRESOLVED_RANGE;
 pub use options::{BYTES_PER_CELL, Bem3d, Method};
@@ -112,6 +113,10 @@ impl ContactModel for Bem3d {
                 Effect::TractionLimit,
                 Effect::FullCoupling,
                 Effect::Layer,
+                Effect::KelvinVoigt,
+                Effect::Maxwell,
+                Effect::StandardSolid,
+                Effect::PronySeries,
             ],
             not_combined: NOT_COMBINED,
             loads: LoadKind::ALL,
@@ -159,8 +164,13 @@ impl Bem3d {
         self.abilities().refuse(NAME, scene)?;
         profile::check(scene)?;
         medium::check_layer(scene)?;
+        medium::check_kernel(scene, self.periodic_kernel)?;
+        viscous::check_rheology(scene)?;
         if !(self.tolerance > 0.0 && self.tolerance < 1.0) {
             return Err(Error::domain("tolerance", self.tolerance, "a number in (0, 1)"));
+        }
+        if !(self.time_tolerance > 0.0 && self.time_tolerance <= 1.0) {
+            return Err(Error::domain("time_tolerance", self.time_tolerance, "a number in (0, 1]"));
         }
         let map = self.heights_until(scene, seed, stop)?;
         PreparedBem3d::new(self, scene, &map, (tuning, recorder))
@@ -169,6 +179,9 @@ impl Bem3d {
 
 const ADHESION: &[Effect] =
     &[Effect::ShortRangeAdhesion, Effect::ExponentialAdhesion, Effect::DugdaleAdhesion];
+
+const RHEOLOGY: &[Effect] =
+    &[Effect::KelvinVoigt, Effect::Maxwell, Effect::StandardSolid, Effect::PronySeries];
 
 /// Effects that the solvers do not combine.
 const NOT_COMBINED: &[NotCombined] = &[
@@ -208,6 +221,22 @@ const NOT_COMBINED: &[NotCombined] = &[
             &[Effect::Friction, Effect::ShearStrength, Effect::TractionLimit, Effect::FullCoupling],
         ],
         reason: "how tangential tractions displace a layer is not known here",
+    },
+    NotCombined {
+        effects: [RHEOLOGY, &[Effect::Hardness]],
+        reason: "not solved, as the indentation would have to be told from what creeps",
+    },
+    NotCombined {
+        effects: [RHEOLOGY, ADHESION],
+        reason: "not solved, as the attraction would have a history too; at an edge that opens or closes with a speed the work of \
+                 adhesion depends on its range",
+    },
+    NotCombined {
+        effects: [
+            RHEOLOGY,
+            &[Effect::Friction, Effect::ShearStrength, Effect::TractionLimit, Effect::FullCoupling],
+        ],
+        reason: "not solved, as tangential displacements would have a history too",
     },
 ];
 

@@ -1,5 +1,6 @@
 //! Numerics of the boundary-element model.
 
+use crate::kernel::PeriodicKernel;
 use contact_model::{Cells, Output, RequiredMemory, Scene, Size, Surface};
 
 /// Name of the model.
@@ -52,6 +53,12 @@ pub struct Bem3d {
     pub max_outer_iterations: usize,
     /// How small sets are solved.
     pub method: Method,
+    /// What the kernel of periodic boundaries is exact for.
+    pub periodic_kernel: PeriodicKernel,
+    /// Largest error that one step of time of a viscoelastic history may add, relative to the largest value of what is
+    /// not prescribed, the force or the distance: steps are as long as it allows. States say how large the errors of all
+    /// steps together are ([`contact_model::ViscoelasticState`]). Elastic contacts take no notice of it.
+    pub time_tolerance: f64,
 }
 
 /// How the linear systems of one contact set are solved.
@@ -82,6 +89,17 @@ impl Method {
 }
 
 impl Bem3d {
+    /// The options that a scene has without its own.
+    pub const DEFAULT: Self = Self {
+        cells: 257,
+        rows: None,
+        tolerance: 1e-6,
+        max_outer_iterations: 200,
+        method: Method::Auto,
+        periodic_kernel: PeriodicKernel::Cells,
+        time_tolerance: 1e-3,
+    };
+
     /// The grid on a rectangle of this size.
     pub fn grid(&self, size: Size) -> Cells {
         let nearly_square = Cells::nearly_square(self.cells, size);
@@ -106,6 +124,6 @@ impl Bem3d {
 
 impl Default for Bem3d {
     fn default() -> Self {
-        Self { cells: 257, rows: None, tolerance: 1e-6, max_outer_iterations: 200, method: Method::Auto }
+        Self::DEFAULT
     }
 }

@@ -11,6 +11,7 @@ use super::adhesive::{AdhesivePath, Last};
 use super::load::{LoadSequence, ScaledLoad};
 use super::memory::IndentationMemory;
 use super::prepared::PreparedSurface;
+use super::viscous::{HistoryMemory, ViscousHistory};
 use crate::active_set::{Candidates, LastState};
 use crate::friction::SlipMemory;
 use crate::geometry::{CellSet, Grid};
@@ -27,6 +28,8 @@ pub(super) struct Remembered<'a> {
     friction: Option<Slipped<'a>>,
     /// The end of the last step, of contacts with adhesion.
     pub adhesive: Option<Cow<'a, Last>>,
+    /// The history of a viscoelastic body.
+    viscous: Option<Cow<'a, HistoryMemory>>,
 }
 
 /// Where a contact is in its loads.
@@ -57,7 +60,12 @@ struct Slipped<'a> {
 
 impl<'a> Remembered<'a> {
     /// The memory of a surface at a place in its loads, and of its adhesion.
-    pub fn of(place: PlaceInLoads, surface: &'a PreparedSurface, adhesive: Option<&'a Last>) -> Self {
+    pub fn of(
+        place: PlaceInLoads,
+        surface: &'a PreparedSurface,
+        adhesive: Option<&'a Last>,
+        viscous: Option<&'a ViscousHistory>,
+    ) -> Self {
         let grid = surface.problem.grid();
         Self {
             place,
@@ -68,14 +76,25 @@ impl<'a> Remembered<'a> {
                 dissipated: sliding.dissipated,
             }),
             adhesive: adhesive.map(Cow::Borrowed),
+            viscous: viscous.map(|history| Cow::Borrowed(history.memory())),
         }
     }
 
     /// Restores a surface without any state to this memory. `false`, and nothing is changed, for a memory that does
     /// not belong to this surface and its effects.
-    pub fn recall(self, surface: &mut PreparedSurface, adhesion: &mut Option<AdhesivePath>) -> bool {
+    pub fn recall(
+        self,
+        surface: &mut PreparedSurface,
+        adhesion: &mut Option<AdhesivePath>,
+        history: &mut Option<ViscousHistory>,
+    ) -> bool {
         let grid = surface.problem.grid();
-        let Self { place, last, hardness, friction, adhesive } = self;
+        let Self { place, last, hardness, friction, adhesive, viscous } = self;
+        let viscous_fits = match (history.as_ref(), &viscous) {
+            (Some(history), Some(memory)) => history.fits(memory, grid),
+            (None, None) => true,
+            _ => false,
+        };
         let fits = place.time.is_finite()
             && last.as_ref().is_none_or(|last| last.fits(grid))
             && adhesive.as_ref().is_none_or(|last| last.fits(grid))
@@ -83,7 +102,8 @@ impl<'a> Remembered<'a> {
             && friction.as_ref().is_none_or(|slipped| slipped.fits(grid))
             && hardness.is_some() == surface.memory.is_some()
             && friction.is_some() == surface.sliding.is_some()
-            && (adhesive.is_none() || adhesion.is_some());
+            && (adhesive.is_none() || adhesion.is_some())
+            && viscous_fits;
         if !fits {
             return false;
         }
@@ -100,6 +120,9 @@ impl<'a> Remembered<'a> {
         surface.last = last.map(Cow::into_owned);
         if let Some(path) = adhesion {
             path.last = adhesive.map(Cow::into_owned);
+        }
+        if let (Some(memory), Some(history)) = (viscous, history) {
+            history.recall(memory.into_owned());
         }
         true
     }
@@ -130,7 +153,7 @@ impl Slipped<'_> {
 }
 
 impl LastState {
-    fn fits(&self, grid: Grid) -> bool {
+    pub(super) fn fits(&self, grid: Grid) -> bool {
         let Self { contact, p, d, force, tangent } = self;
         contact.is_on(grid)
             && are_of(contact, 1, &[p])

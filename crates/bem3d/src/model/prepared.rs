@@ -60,6 +60,9 @@ pub struct PreparedSurface {
     pub(super) last: Option<LastState>,
     /// The memory of a path with a hardness; `None` without a path.
     pub(super) memory: Option<IndentationMemory>,
+    /// What the history of a viscoelastic body adds to the displacement, row-major in units of the height; empty where
+    /// there is none.
+    pub(super) crept: Vec<f64>,
     /// Friction, and what it remembers of a path.
     pub(super) sliding: Option<SurfaceFriction>,
     /// Sides of the map.
@@ -135,7 +138,7 @@ impl PreparedSurface {
         let nondimensional = Nondimensionalisation::new(scene.contact_modulus, length, height)?;
         let defined = z.len() - map.undefined();
         let mean = sum_of_pairs(&z, &z, |z, _| if z.is_finite() { z } else { 0.0 }) / defined as f64;
-        let medium = medium::of(scene, length);
+        let medium = medium::of(scene, options.periodic_kernel, length);
         medium::check_thickness(scene, medium, length)?;
         let mut problem = Problem::recorded(grid, Arc::new(z), medium, tuning, recorder);
         problem.nested = options.method != Method::SingleLevel;
@@ -166,6 +169,7 @@ impl PreparedSurface {
             defined,
             last: None,
             memory: None,
+            crept: Vec::new(),
             sliding,
             size: map.size(),
             is_profile: matches!(scene.surface, Surface::Profile(_)),

@@ -295,7 +295,10 @@ impl PreparedSurface {
                 fields.gap = Some(self.field(gap)?);
             }
             if self.outputs.displacement {
-                let displacement = u.iter().map(|u| (u - shift) * height).collect();
+                let mut displacement: Vec<f64> = u.iter().map(|u| (u - shift) * height).collect();
+                for (u, crept) in displacement.iter_mut().zip(&self.crept) {
+                    *u += crept * height;
+                }
                 fields.displacement = Some(self.field(displacement)?);
             }
         }

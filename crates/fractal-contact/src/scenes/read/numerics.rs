@@ -7,7 +7,7 @@ use crate::scenes::read::{
 };
 use analytic::greenwood_williamson::SummitHeights;
 use analytic::{GreenwoodWilliamson, Persson};
-use bem3d::{Bem3d, Method};
+use bem3d::{Bem3d, Method, PeriodicKernel};
 use contact_model::{Cells, ContactModel, Size};
 use mdr1d::{Equivalent, Mdr1d};
 use std::sync::Arc;
@@ -326,6 +326,40 @@ static BEM3D_KEYS: KeyTable<Bem3d> = KeyTable {
                     .map(|method| model.method = method)
             },
             print: |model, _| (model.method != Method::Auto).then(|| printed::text(model.method.as_str())),
+        },
+        Key {
+            name: "periodic_kernel",
+            takes: "`\"cells\"` or `\"waves\"`",
+            about: "pressures for which the periodic kernel is exact: uniform on cells, or waves as in other programs",
+            default: "`\"cells\"`",
+            read: |model, entry, _| {
+                entry
+                    .choice(&PeriodicKernel::ALL.map(|kernel| (kernel.as_str(), kernel)))
+                    .map(|kernel| model.periodic_kernel = kernel)
+            },
+            print: |model, _| {
+                let kernel = model.periodic_kernel;
+                (kernel != PeriodicKernel::Cells).then(|| printed::text(kernel.as_str()))
+            },
+        },
+        Key {
+            name: "time_tolerance",
+            takes: "number > 0 and <= 1",
+            about: "largest relative error that one step of time of a viscoelastic history adds",
+            default: "1e-3",
+            read: |model, entry, _| match entry.positive_number()? {
+                error if error <= 1.0 => {
+                    model.time_tolerance = error;
+                    Ok(())
+                }
+                large => Err(entry
+                    .outside(large, "a number <= 1")
+                    .with_help("1e-3 is the default; 1 takes the longest steps")),
+            },
+            print: |model, _| {
+                let is_default = model.time_tolerance.to_bits() == Bem3d::DEFAULT.time_tolerance.to_bits();
+                (!is_default).then(|| printed::number(model.time_tolerance))
+            },
         },
     ],
 };

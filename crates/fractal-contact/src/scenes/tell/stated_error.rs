@@ -14,17 +14,22 @@ pub(crate) const OF_GRID: &str = "The number behind ± is the estimated error of
                                  no error is estimated, or it does not change the digits shown.";
 pub(crate) const OF_GRID_UNCONFIRMED: &str = "The number behind ± is the error of the grid and of the solver. It is estimated, not confirmed by a finer grid. Without ± no \
      error is estimated, or it does not change the digits shown.";
-pub(crate) const OF_SOLVER: &str = "The number behind ± is the estimated error of the solver on these cells. It does not \
+pub(crate) const OF_SOLVER: &str = "The number behind ± is the estimated error of the solver on these cells, steps of time included. It does not \
                                    contain the error of the grid, which `grid_error = true` in [outputs] estimates for loads that do not form a path.";
 
 /// Quantities whose relative error on the cells that were solved is another quantity.
-const SOLVER_ERRORS: [(&str, &str); 6] = [
+const SOLVER_ERRORS: [(&str, &str); 11] = [
     ("force", "force_error"),
     ("stiffness", "stiffness_error"),
     ("tangential_stiffness", "tangential_stiffness_error"),
     ("tangential_stiffness_y", "tangential_stiffness_error"),
     ("tangential_stiffness_stuck", "tangential_stiffness_error"),
     ("tangential_stiffness_stuck_y", "tangential_stiffness_error"),
+    ("force", "force_time_error"),
+    ("approach", "approach_time_error"),
+    ("mean_gap", "mean_gap_time_error"),
+    ("area", "area_time_error"),
+    ("contact_fraction", "area_time_error"),
 ];
 
 /// The estimated relative error of a quantity of a state: that of the grid and that of the solver, as far as
@@ -34,12 +39,14 @@ pub(crate) fn relative_error(record: &StateRecord, quantity: &StateQuantity) -> 
     let compared = if quantity.name == "contact_fraction" { "area" } else { quantity.name };
     let of_grid =
         record.solved().and_then(|solved| solved.grid.as_ref()?.of(compared)).map(|found| found.error);
-    let of_solver = SOLVER_ERRORS.iter().find(|(name, _)| *name == quantity.name).and_then(|(_, error)| {
-        match columns::value(record, StateQuantity::named(error)?) {
-            Value::Number(error) => Some(error),
-            _ => None,
-        }
-    });
+    let of_solver =
+        SOLVER_ERRORS.iter().filter(|(name, _)| *name == quantity.name).filter_map(|(_, error)| {
+            match columns::value(record, StateQuantity::named(error)?) {
+                Value::Number(error) => Some(error),
+                _ => None,
+            }
+        });
+    let of_solver = of_solver.reduce(|sum, error| sum + error);
     match (of_grid, of_solver) {
         (None, None) => None,
         (of_grid, of_solver) => Some(of_grid.unwrap_or(0.0) + of_solver.unwrap_or(0.0)),

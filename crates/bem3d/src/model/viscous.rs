@@ -1,0 +1,560 @@
+//! Viscoelastic bodies: a history in steps of time, each of which is one elastic contact.
+//!
+//! At each cell stands the pressure P with which an elastic body of the modulus E* would be displaced as the
+//! viscoelastic one is: `u = K P/E*`. The true pressure follows from the history of P in the same cell,
+//! `p = int E*(t - t')/E* dP(t')`, and needs no other cell. In a step of time P goes straight from one value to the
+//! next, so that `p = M (P - H)`: M is a modulus of the step, and H a pressure that the history leaves. The contact
+//! at the end of the step is therefore that of an elastic body of the modulus `M E*` with the heights displaced by
+//! `K H/E*`, and any elastic solver finds it. Each arm of the relaxation remembers one number a cell, and no
+//! integral goes over the past.
+//!
+//! The error of the steps is measured by a second history with steps twice as long.
+
+use super::load::{ScaledLoad, ScaledNormal};
+use super::options::NAME;
+use super::prepared::PreparedSurface;
+use crate::active_set::{Candidates, LastState};
+use crate::geometry::{CellSet, Grid};
+use crate::real::{sum_of_pairs, update};
+use contact_model::{
+    Conductance, ContactState, Error, Interrupted, Nondimensionalisation, Outputs, RelaxationSpectrum,
+    Result, Rheology, Scene, Stop, ViscoelasticState,
+};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+
+/// A step of time is cut to no less than this share of the piece of the path in which it lies.
+const SHORTEST_STEP: f64 = 1e-9;
+/// The next step is this much shorter than the one whose error would be what is allowed.
+const CAUTION: f64 = 0.8;
+/// The next step over the last one, at least and at most.
+const STEP_CHANGE: (f64, f64) = (0.2, 4.0);
+/// The error of a step falls with its length to this power at least, until cells come into contact.
+const STEP_ORDER: f64 = 2.0;
+
+/// The part of a history on which the next step depends.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct HistoryMemory {
+    /// In steps half as long as those of `coarse`.
+    fine: ViscousTrack,
+    /// Absent as long as both are the same.
+    coarse: Option<ViscousTrack>,
+    /// Length of the next step, where one is known.
+    step: Option<f64>,
+    /// The largest response so far: force, and approach.
+    largest: Response,
+}
+
+/// What a load brings about.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+struct Response {
+    force: f64,
+    /// The approach; of a periodic surface by how much the mean gap has fallen from that of the first touch.
+    approach: f64,
+}
+
+/// One history: P and the memory of the arms, on the cells that were once in contact.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct ViscousTrack {
+    cells: CellSet,
+    /// P.
+    pressure: Vec<f64>,
+    /// q of each arm: `p = e P + sum w q` in units of E*.
+    arms: Vec<Vec<f64>>,
+    /// The last contact, whose pressures are the true ones.
+    last: Option<LastState>,
+    reached: Reached,
+}
+
+/// The load at which a track has arrived, in the units of a surface with the modulus E*.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+struct Reached {
+    force: f64,
+    approach: f64,
+    mean_gap: f64,
+    /// Number of cells in contact.
+    cells: usize,
+}
+
+/// How the material answers a step of time in which P goes straight.
+struct StepLaw {
+    /// M.
+    modulus: f64,
+    /// The share of `M H` that is `P` at the beginning, without arms.
+    kept: f64,
+    arms: Vec<ArmStep>,
+}
+
+/// `q = decay q_0 + rise (P - P_0)`.
+struct ArmStep {
+    weight: f64,
+    decay: f64,
+    rise: f64,
+}
+
+impl StepLaw {
+    /// That of a step of this duration; 0 is a jump.
+    ///
+    /// The arms are exact for a P that goes straight. A dashpot beside them takes the end of the step as if the
+    /// pressure had been constant, which is of first order in the duration, but never alternates.
+    fn new(spectrum: &RelaxationSpectrum, duration: f64) -> Self {
+        let arms: Vec<_> = (spectrum.arms.iter())
+            .map(|arm| {
+                let angle = arm.rate * duration;
+                let rise = if angle > 0.0 { -(-angle).exp_m1() / angle } else { 1.0 };
+                ArmStep { weight: arm.weight, decay: (-angle).exp(), rise }
+            })
+            .collect();
+        let (mut modulus, mut kept) = (spectrum.equilibrium, 0.0);
+        if spectrum.is_stiff() {
+            let angle = spectrum.equilibrium * duration / spectrum.viscous;
+            modulus /= -(-angle).exp_m1();
+            kept = modulus * (-angle).exp();
+        }
+        modulus += arms.iter().map(|arm| arm.weight * arm.rise).sum::<f64>();
+        Self { modulus, kept, arms }
+    }
+}
+
+impl ViscousTrack {
+    /// Before any load, at the first touch.
+    fn new(surface: &PreparedSurface, spectrum: &RelaxationSpectrum) -> Self {
+        let mean_gap = surface.mean - surface.problem.candidates.range().first;
+        Self {
+            arms: vec![Vec::new(); spectrum.arms.len()],
+            reached: Reached { mean_gap, ..Reached::default() },
+            ..Self::default()
+        }
+    }
+
+    /// H on the cells of the track.
+    fn left(&self, law: &StepLaw) -> Vec<f64> {
+        let mut left: Vec<f64> = self.pressure.iter().map(|p| law.kept * p).collect();
+        for (arm, step) in self.arms.iter().zip(&law.arms) {
+            for ((left, p), q) in left.iter_mut().zip(&self.pressure).zip(arm) {
+                *left += step.weight * (step.rise * p - step.decay * q);
+            }
+        }
+        for value in &mut left {
+            *value /= law.modulus;
+        }
+        left
+    }
+
+    /// The track after a step that left H and solved for `P - H` on these cells.
+    fn advanced(&self, law: &StepLaw, left: &[f64], contact: &CellSet, solved: &[f64]) -> Self {
+        let cells = self.cells.union(contact);
+        let before = cells.carry(&self.cells, &self.pressure);
+        let mut pressure = cells.carry(&self.cells, left);
+        cells.add_carried(contact, solved, &mut pressure);
+        let arms = (self.arms.iter().zip(&law.arms))
+            .map(|(arm, step)| {
+                let mut arm = cells.carry(&self.cells, arm);
+                for ((q, p), before) in arm.iter_mut().zip(&pressure).zip(&before) {
+                    *q = step.decay * *q + step.rise * (p - before);
+                }
+                arm
+            })
+            .collect();
+        Self { cells, pressure, arms, last: None, reached: Reached::default() }
+    }
+
+    /// Whether its cells and numbers are those of a surface and a material.
+    fn fits(&self, grid: Grid, arms: usize) -> bool {
+        let sound = |values: &Vec<f64>| {
+            values.len() == self.cells.len() && values.iter().all(|value| value.is_finite())
+        };
+        let Reached { force, approach, mean_gap, .. } = self.reached;
+        self.cells.is_on(grid)
+            && self.arms.len() == arms
+            && sound(&self.pressure)
+            && self.arms.iter().all(sound)
+            && self.last.as_ref().is_none_or(|last| last.fits(grid))
+            && [force, approach, mean_gap].into_iter().all(f64::is_finite)
+    }
+}
+
+/// A viscoelastic surface, and where it is in its history.
+#[derive(Debug)]
+pub(super) struct ViscousHistory {
+    spectrum: RelaxationSpectrum,
+    /// The units of the surface with the modulus E*.
+    elastic: Nondimensionalisation,
+    /// Undeformed gaps of the surface, and their mean.
+    virgin: (Arc<Vec<f64>>, f64),
+    /// Largest error that one step of time adds, relative.
+    tolerance: f64,
+    /// The law of a step; another one in comparisons with other programs.
+    law: fn(&RelaxationSpectrum, f64) -> StepLaw,
+    memory: HistoryMemory,
+}
+
+/// A step of time of one track.
+#[derive(Clone, Copy)]
+struct TimeStep {
+    duration: f64,
+    /// The load at its end.
+    load: ScaledLoad,
+}
+
+/// Refuses what a viscoelastic contact does not have.
+///
+/// # Errors
+/// [`Error::Unsupported`] for a stiffness, a conductance, two bodies that deform and a layer on another material.
+pub(super) fn check_rheology(scene: &Scene) -> Result<()> {
+    let rheology = &scene.effects.rheology;
+    if *rheology == Rheology::Elastic {
+        return Ok(());
+    }
+    let refused = |what: &'static str| Err(Error::unsupported(NAME, what));
+    let Outputs { stiffness, stiffness_fixed_area, conductance, .. } = scene.outputs;
+    if stiffness || stiffness_fixed_area {
+        return refused("the stiffness of a viscoelastic body (it depends on how fast one pushes)");
+    }
+    if conductance != Conductance::Off {
+        return refused("the conductance of a viscoelastic body: it follows from a stiffness");
+    }
+    if let Some(contact_model::Layer { base: contact_model::LayerBase::HalfSpace { .. }, .. }) =
+        scene.effects.layer
+    {
+        return refused(
+            "a viscoelastic layer on a half-space, which would have to relax as the layer does (a rigid base need not)",
+        );
+    }
+    scene.pair.as_ref().map_or(Ok(()), |pair| rheology.check_pair(pair, NAME))
+}
+
+impl ViscousHistory {
+    /// The history of a surface before any load; `None` for an elastic one.
+    ///
+    /// # Errors
+    /// As [`Rheology::spectrum`].
+    pub(super) fn of(surface: &PreparedSurface, scene: &Scene) -> Result<Option<Self>> {
+        let Some(spectrum) = scene.effects.rheology.spectrum(scene.contact_modulus)? else { return Ok(None) };
+        let options = surface.options;
+        let fine = ViscousTrack::new(surface, &spectrum);
+        Ok(Some(Self {
+            spectrum,
+            elastic: surface.nondimensional,
+            virgin: (surface.problem.candidates.shared(), surface.mean),
+            tolerance: options.time_tolerance,
+            law: StepLaw::new,
+            memory: HistoryMemory { fine, coarse: None, step: None, largest: Response::default() },
+        }))
+    }
+
+    /// Forgets all loads.
+    pub(super) fn begin(&mut self, surface: &mut PreparedSurface) {
+        self.rest(surface);
+        let fine = ViscousTrack::new(surface, &self.spectrum);
+        self.memory = HistoryMemory { fine, coarse: None, step: None, largest: Response::default() };
+    }
+
+    /// What the next step follows from.
+    pub(super) fn memory(&self) -> &HistoryMemory {
+        &self.memory
+    }
+
+    /// Whether a memory belongs to this history.
+    pub(super) fn fits(&self, memory: &HistoryMemory, grid: Grid) -> bool {
+        let HistoryMemory { fine, coarse, step, largest } = memory;
+        let arms = self.spectrum.arms.len();
+        fine.fits(grid, arms)
+            && coarse.as_ref().is_none_or(|coarse| coarse.fits(grid, arms))
+            && step.is_none_or(|step| step.is_finite() && step > 0.0)
+            && largest.force.is_finite()
+            && largest.approach.is_finite()
+    }
+
+    /// Goes on from a memory that fits.
+    pub(super) fn recall(&mut self, memory: HistoryMemory) {
+        self.memory = memory;
+    }
+
+    /// The surface without its history, in the units of the modulus E*.
+    fn rest(&self, surface: &mut PreparedSurface) {
+        let (virgin, mean) = &self.virgin;
+        surface.nondimensional = self.elastic;
+        surface.problem.candidates = Candidates::new(surface.problem.grid(), Arc::clone(virgin));
+        surface.problem.coarser = None;
+        (surface.mean, surface.last) = (*mean, None);
+        surface.crept = Vec::new();
+    }
+
+    /// The state after a piece of the path in which the load goes straight to this one. A load that was stopped, or
+    /// was not solved, leaves the history where it was.
+    pub(super) fn at(
+        &mut self,
+        surface: &mut PreparedSurface,
+        load: ScaledLoad,
+        duration: f64,
+        stop: Stop<'_>,
+    ) -> Result<ContactState> {
+        let outputs = surface.outputs;
+        let found = self.piece(surface, load, duration, stop);
+        surface.outputs = outputs;
+        self.rest(surface);
+        let (state, memory) = found?;
+        self.memory = memory;
+        Ok(state)
+    }
+
+    /// The state at the end of a piece of the path, and the memory there.
+    fn piece(
+        &self,
+        surface: &mut PreparedSurface,
+        load: ScaledLoad,
+        duration: f64,
+        stop: Stop<'_>,
+    ) -> Result<(ContactState, HistoryMemory)> {
+        let wanted = surface.outputs;
+        let hidden = Outputs::default();
+        let mut memory = self.memory.clone();
+        let mut work = StepWork::default();
+        if duration <= 0.0 {
+            if self.spectrum.is_stiff() {
+                let what = "a load in no time on a body of Kelvin and Voigt, whose dashpot does not move at once: give the \
+                            load a time";
+                return Err(Error::unsupported(NAME, what));
+            }
+            let jump = TimeStep { duration: 0.0, load };
+            if let Some(coarse) = &mut memory.coarse {
+                surface.outputs = hidden;
+                *coarse = self.step(surface, coarse, jump, &mut work, stop)?.1;
+            }
+            surface.outputs = wanted;
+            let (state, fine) = self.step(surface, &memory.fine, jump, &mut work, stop)?;
+            memory.fine = fine;
+            memory.largest = self.largest(&memory, memory.largest);
+            return Ok((Self::finished(surface, state, &memory, load, work), memory));
+        }
+        let start = memory.fine.reached;
+        let at = |share: f64| ScaledLoad { normal: start.towards(load.normal, share), ..load };
+        // The largest response that any attempt has shown: what errors are relative to.
+        let mut scale = memory.largest;
+        let (mut done, mut step) = (0.0, memory.step.unwrap_or(duration));
+        loop {
+            let left = duration - done;
+            // No short rest is left to the last step.
+            let now = if step >= left {
+                left
+            } else if 2.0 * step > left {
+                0.5 * left
+            } else {
+                step
+            };
+            let ends = now >= left;
+            let (middle, end) = ((done + 0.5 * now) / duration, (done + now) / duration);
+            let end = if ends { 1.0 } else { end };
+            surface.outputs = hidden;
+            let coarse = memory.coarse.as_ref().unwrap_or(&memory.fine);
+            let whole = TimeStep { duration: now, load: at(end) };
+            let coarse = self.step(surface, coarse, whole, &mut work, stop)?.1;
+            let half = TimeStep { duration: 0.5 * now, load: at(middle) };
+            let fine = self.step(surface, &memory.fine, half, &mut work, stop)?.1;
+            if ends {
+                surface.outputs = wanted;
+            }
+            let half = TimeStep { duration: 0.5 * now, load: at(end) };
+            let (state, fine) = self.step(surface, &fine, half, &mut work, stop)?;
+            let next = HistoryMemory { fine, coarse: Some(coarse), step: None, largest: scale };
+            scale = self.largest(&next, scale);
+            let added = (self.error(&next, load, scale) - self.error(&memory, load, scale)).abs();
+            let ratio = (self.tolerance / added).powf(STEP_ORDER.recip()) * CAUTION;
+            let better = now * ratio.clamp(STEP_CHANGE.0, STEP_CHANGE.1);
+            if added > self.tolerance && now > SHORTEST_STEP * duration {
+                work.rejected += 1;
+                step = better.min(0.5 * now);
+                continue;
+            }
+            work.steps += 1;
+            done += now;
+            // A step that the end of the piece cut short says little about the longest possible one.
+            let kept = if ends { better.max(step.min(STEP_CHANGE.1 * now)) } else { better };
+            memory = HistoryMemory { step: Some(kept), largest: self.largest(&next, memory.largest), ..next };
+            step = kept;
+            if ends {
+                return Ok((Self::finished(surface, state, &memory, load, work), memory));
+            }
+        }
+    }
+
+    /// The larger of responses, and those of a history.
+    fn largest(&self, memory: &HistoryMemory, before: Response) -> Response {
+        let now = self.response(&memory.fine);
+        Response {
+            force: before.force.max(now.force.abs()),
+            approach: before.approach.max(now.approach.abs()),
+        }
+    }
+
+    fn response(&self, track: &ViscousTrack) -> Response {
+        let Reached { force, approach, mean_gap, .. } = track.reached;
+        Response { force, approach: approach.max(self.virgin.1 - mean_gap) }
+    }
+
+    /// The difference between both histories in what the load leaves free, relative to the largest.
+    fn error(&self, memory: &HistoryMemory, load: ScaledLoad, scale: Response) -> f64 {
+        let Some(coarse) = &memory.coarse else { return 0.0 };
+        let (fine, coarse) = (self.response(&memory.fine), self.response(coarse));
+        let relative = |difference: f64, of: f64| if difference == 0.0 { 0.0 } else { difference.abs() / of };
+        match load.normal {
+            ScaledNormal::Force(_) => relative(fine.approach - coarse.approach, scale.approach),
+            _ => relative(fine.force - coarse.force, scale.force),
+        }
+    }
+
+    /// The state at the end of a piece, with the error of its steps.
+    fn finished(
+        surface: &PreparedSurface,
+        mut state: ContactState,
+        memory: &HistoryMemory,
+        load: ScaledLoad,
+        work: StepWork,
+    ) -> ContactState {
+        let errors = memory.coarse.as_ref().map_or([0.0; 3], |coarse| {
+            let (fine, coarse) = (memory.fine.reached, coarse.reached);
+            let relative = |fine: f64, coarse: f64| {
+                let difference = (fine - coarse).abs();
+                if difference > 0.0 { difference / fine.abs().max(f64::MIN_POSITIVE) } else { 0.0 }
+            };
+            let prescribed = |error: f64, is_free: bool| if is_free { error } else { 0.0 };
+            let distance = match surface.is_periodic() {
+                true => relative(fine.mean_gap, coarse.mean_gap),
+                false => relative(fine.approach, coarse.approach),
+            };
+            let by_force = matches!(load.normal, ScaledNormal::Force(_));
+            [
+                prescribed(relative(fine.force, coarse.force), !by_force),
+                prescribed(distance, by_force),
+                relative(fine.cells as f64, coarse.cells as f64),
+            ]
+        });
+        state.report.iterations = work.iterations;
+        state.report.applications = work.applications;
+        state.report.work.linear_solves = work.linear_solves;
+        state.with_viscoelastic(ViscoelasticState::new(errors, work.steps))
+    }
+
+    /// A step of one track: its state, and the track at its end.
+    fn step(
+        &self,
+        surface: &mut PreparedSurface,
+        track: &ViscousTrack,
+        step: TimeStep,
+        work: &mut StepWork,
+        stop: Stop<'_>,
+    ) -> Result<(ContactState, ViscousTrack)> {
+        let law = (self.law)(&self.spectrum, step.duration);
+        let modulus = law.modulus;
+        self.rest(surface);
+        surface.nondimensional = self.elastic.with_modulus_times(modulus)?;
+        let left = track.left(&law);
+        surface.creep(&track.cells, &left, &self.virgin.0, stop)?;
+        surface.last = track.last.as_ref().map(|last| last.scaled(modulus.recip()));
+        let load = ScaledLoad { normal: step.load.normal.over(modulus), ..step.load };
+        let state = surface.at(load, stop)?;
+        work.add(&state);
+        let touches = state.force > 0.0;
+        let last = surface.last.take().filter(|_| touches);
+        let (contact, solved): (CellSet, &[f64]) =
+            last.as_ref().map_or((CellSet::default(), &[]), |last| (last.contact.clone(), &last.p));
+        let mut next = track.advanced(&law, &left, &contact, solved);
+        let force = last.as_ref().map_or(0.0, |last| last.force);
+        let approach = match (&last, load.normal) {
+            (Some(last), _) => last.d,
+            (None, ScaledNormal::Approach(d)) => d,
+            (None, ScaledNormal::MeanGap(gap)) => surface.mean - gap,
+            (None, ScaledNormal::Force(_)) => surface.problem.candidates.range().first,
+        };
+        let mean_gap = surface.mean_gap(surface.is_full(&contact), approach, force);
+        next.reached = Reached { force: modulus * force, approach, mean_gap, cells: contact.len() };
+        next.last = last.map(|last| last.scaled(modulus));
+        Ok((state, next))
+    }
+}
+
+impl Reached {
+    /// The load at a share of the way from here to another.
+    fn towards(self, load: ScaledNormal, share: f64) -> ScaledNormal {
+        let between = |from: f64, to: f64| if share >= 1.0 { to } else { from + share * (to - from) };
+        match load {
+            ScaledNormal::Force(to) => ScaledNormal::Force(between(self.force, to)),
+            ScaledNormal::Approach(to) => ScaledNormal::Approach(between(self.approach, to)),
+            ScaledNormal::MeanGap(to) => ScaledNormal::MeanGap(between(self.mean_gap, to)),
+        }
+    }
+}
+
+impl ScaledNormal {
+    /// The load in the units of a body with another modulus.
+    fn over(self, modulus: f64) -> Self {
+        match self {
+            Self::Force(force) => Self::Force(force / modulus),
+            other => other,
+        }
+    }
+}
+
+/// The work of a piece of a path.
+#[derive(Debug, Clone, Copy, Default)]
+struct StepWork {
+    steps: usize,
+    rejected: usize,
+    iterations: usize,
+    applications: usize,
+    linear_solves: usize,
+}
+
+impl StepWork {
+    fn add(&mut self, state: &ContactState) {
+        self.iterations += state.report.iterations;
+        self.applications += state.report.applications;
+        self.linear_solves += state.report.work.linear_solves;
+    }
+}
+
+impl PreparedSurface {
+    /// Displaces the heights by a pressure that a history has left.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] by the stop.
+    fn creep(&mut self, cells: &CellSet, left: &[f64], virgin: &[f64], stop: Stop<'_>) -> Result<()> {
+        if cells.is_empty() {
+            return Ok(());
+        }
+        let (grid, mut crept) = (self.problem.grid(), Vec::new());
+        let all = CellSet::all(grid);
+        self.problem
+            .operators
+            .exact(cells, left, &all, &mut crept, stop)
+            .map_err(Interrupted::without_state)?;
+        let mut z = virgin.to_vec();
+        update(&mut z, &crept, |z, u| *z += u);
+        let sum = sum_of_pairs(&z, &z, |z, _| if z.is_finite() { z } else { 0.0 });
+        self.mean = sum / self.defined as f64;
+        self.problem.candidates = Candidates::new(grid, Arc::new(z));
+        // What the constant in the kernel adds is no displacement.
+        let shift = self.problem.operators.table().shift() * left.iter().sum::<f64>();
+        for u in &mut crept {
+            *u -= shift;
+        }
+        self.crept = crept;
+        Ok(())
+    }
+}
+
+impl LastState {
+    /// The same contact of a body with another modulus.
+    fn scaled(&self, factor: f64) -> Self {
+        Self {
+            p: self.p.iter().map(|p| p * factor).collect(),
+            force: self.force * factor,
+            tangent: None,
+            ..self.clone()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,343 @@
+//! Viscoelastic contacts: correspondence with elastic ones while the contact grows, and histories beyond.
+
+#![allow(clippy::unwrap_used)]
+
+use approx::assert_relative_eq;
+use bem3d::*;
+use contact_model::{Layer, LayerBase, PronySeries, Relaxing, Rheology};
+
+const MODULUS: f64 = 4.0;
+const ARM: Relaxing = Relaxing { weight: 3.0, time: 2.0 };
+const SOLID: Rheology = Rheology::StandardSolid { arm: ARM };
+const MODEL: Bem3d = Bem3d { cells: 48, tolerance: 1e-8, ..Bem3d::DEFAULT };
+
+fn scene(surface: Surface, boundary: Boundary, rheology: Rheology) -> Scene {
+    let mut scene = Scene::new(surface, MODULUS);
+    scene.effects.rheology = rheology;
+    scene.effects.boundary = boundary;
+    scene.outputs = Outputs { area: true, mean_gap: boundary == Boundary::Periodic, ..Outputs::default() };
+    scene
+}
+
+fn ball() -> Surface {
+    Surface::Sphere { radius: 1.0, size: 1.0.into() }
+}
+
+fn rough() -> Surface {
+    let mut surface = SelfAffine::new(2.3, 1.0, 0.01).unwrap();
+    surface.short_cutoff = Some(16.0);
+    Surface::SelfAffine(surface)
+}
+
+/// The states at the ends of these steps.
+fn history(model: &Bem3d, scene: &Scene, steps: &[(f64, Load)]) -> Vec<ContactState> {
+    let mut contact = model.prepare(scene, 3).unwrap();
+    steps.iter().map(|&(time, load)| contact.advance(Step::new(time, load)).unwrap()).collect()
+}
+
+/// A force applied at once and held: the creep function of the material over E*.
+fn creep(rheology: Rheology, time: f64) -> f64 {
+    match rheology {
+        Rheology::StandardSolid { arm: Relaxing { weight, time: tau } } => {
+            1.0 - weight / (1.0 + weight) * (-time / (tau * (1.0 + weight))).exp()
+        }
+        // G = E*/4 = 1.
+        Rheology::Maxwell { viscosity } => 1.0 + time / viscosity,
+        _ => 1.0,
+    }
+}
+
+/// While the contact grows it is that of an elastic body under the force that creep makes of it, on the same cells:
+/// what differs is the error of the steps of time, and states say how large it is.
+#[test]
+fn a_held_force_is_an_elastic_contact_under_what_creep_makes_of_it() {
+    let layer = Layer { thickness: 0.2, young: MODULUS * 0.75, poisson: 0.5, base: LayerBase::Rigid };
+    let fluid = Rheology::Maxwell { viscosity: 2.0 };
+    for (surface, boundary, rheology, layer, force) in [
+        (ball(), Boundary::Free, SOLID, None, 0.02),
+        (ball(), Boundary::Free, fluid, None, 0.005),
+        (rough(), Boundary::Free, SOLID, None, 0.01),
+        (rough(), Boundary::Periodic, SOLID, None, 0.02),
+        (rough(), Boundary::Periodic, fluid, None, 0.005),
+        (rough(), Boundary::Periodic, SOLID, Some(layer), 0.01),
+        (ball(), Boundary::Free, SOLID, Some(layer), 0.02),
+    ] {
+        let mut scene = scene(surface, boundary, rheology);
+        scene.effects.layer = layer;
+        let mut elastic = scene.clone();
+        elastic.effects.rheology = Rheology::Elastic;
+        let mut elastic = MODEL.prepare(&elastic, 3).unwrap();
+        let times = [0.0, 0.1, 1.0, 4.0, 10.0];
+        let states = history(&MODEL, &scene, &times.map(|time| (time, Load::force(force))));
+        for (time, state) in times.into_iter().zip(states) {
+            let expected = elastic.solve(Load::force(force * creep(rheology, time))).unwrap();
+            let of = state.viscoelastic.unwrap();
+            // Ten times the solver's tolerance, in rms heights or approaches.
+            let error = of.distance_time_error + 1e-6;
+            if boundary == Boundary::Free {
+                assert_relative_eq!(
+                    state.approach.unwrap(),
+                    expected.approach.unwrap(),
+                    max_relative = error
+                );
+            } else {
+                let (gap, expected) = (state.mean_gap.unwrap(), expected.mean_gap.unwrap());
+                assert!((gap - expected).abs() < error * gap.max(0.01), "{time}: {gap} {expected} {of:?}");
+            }
+            let (cells, expected) =
+                (state.report.contact_cells.unwrap(), expected.report.contact_cells.unwrap());
+            assert!(cells.abs_diff(expected) <= 2 + cells / 500, "{time}: {cells} {expected} {of:?}");
+            assert_relative_eq!(state.force, force, max_relative = 1e-12);
+        }
+    }
+}
+
+/// A load in no time meets the glassy body, and one that is held for long the relaxed one.
+#[test]
+fn both_limits_are_elastic() {
+    let arms = [ARM, Relaxing { weight: 1.0, time: 0.3 }];
+    let series = Rheology::Prony(PronySeries::new(&arms).unwrap());
+    for (surface, boundary) in [(ball(), Boundary::Free), (rough(), Boundary::Periodic)] {
+        let viscous = scene(surface.clone(), boundary, series);
+        let steps = [(0.0, Load::force(0.01)), (200.0, Load::force(0.01))];
+        let states = history(&MODEL, &viscous, &steps);
+        for (state, factor) in states.iter().zip([5.0, 1.0]) {
+            let mut elastic = scene(surface.clone(), boundary, Rheology::Elastic);
+            elastic.contact_modulus *= factor;
+            let expected = MODEL.prepare(&elastic, 3).unwrap().solve(Load::force(0.01)).unwrap();
+            assert_eq!(state.report.contact_cells, expected.report.contact_cells);
+            let distance = |state: &ContactState| state.approach.or(state.mean_gap).unwrap();
+            assert_relative_eq!(distance(state), distance(&expected), max_relative = 1e-6);
+        }
+        assert_eq!(states[0].viscoelastic.unwrap().time_steps, 0);
+    }
+}
+
+/// At a held approach nothing moves, and the force relaxes as the modulus does, whatever the steps are.
+#[test]
+fn a_held_approach_relaxes_as_the_modulus() {
+    for (surface, boundary) in [(ball(), Boundary::Free), (rough(), Boundary::Periodic)] {
+        let load = if boundary == Boundary::Free { Load::approach(0.02) } else { Load::mean_gap(0.01) };
+        let scene = scene(surface, boundary, SOLID);
+        let states = history(&MODEL, &scene, &[(0.0, load), (1.0, load), (7.0, load), (60.0, load)]);
+        for state in &states {
+            let modulus = 1.0 + 3.0 * (-state.time.unwrap() / 2.0_f64).exp();
+            assert_relative_eq!(state.force / states[0].force, modulus / 4.0, max_relative = 1e-6);
+            assert_eq!(state.report.contact_cells, states[0].report.contact_cells);
+            assert!(state.viscoelastic.unwrap().force_time_error < 1e-6);
+        }
+    }
+}
+
+/// The error of fixed steps falls as the square of their length, and states know it.
+#[test]
+fn steps_are_of_second_order() {
+    let viscous = scene(ball(), Boundary::Free, SOLID);
+    // Up and down again, so that the contact shrinks too; the corner is the end of a step.
+    let at = |count: u32| {
+        let steps: Vec<_> = (1..=count)
+            .map(|k| {
+                let share = f64::from(k) / f64::from(count);
+                (4.0 * share, Load::approach(0.04 * share.min(0.65 - 0.3 * share)))
+            })
+            .collect();
+        // Any error is allowed, so that each load is one step.
+        history(&Bem3d { time_tolerance: 1.0, ..MODEL }, &viscous, &steps).pop().unwrap()
+    };
+    let exact = at(320).force;
+    let errors: Vec<_> = [10, 20, 40].map(at).iter().map(|s| (s.force / exact - 1.0).abs()).collect();
+    for (pair, count) in errors.windows(2).zip([10, 20]) {
+        assert!(pair[0] / pair[1] > 3.0, "{count}: {errors:?}");
+    }
+    for count in [10, 20, 40] {
+        let state = at(count);
+        let stated = state.viscoelastic.unwrap().force_time_error;
+        assert!((state.force / exact - 1.0).abs() < stated, "{count}: {stated}");
+    }
+}
+
+/// A ball that is pressed in and drawn back, beside Ting's solution (J. Appl. Mech. 33, 845 (1966)): while the contact
+/// shrinks it is as large as at an earlier time, from which on the approach has left nothing in the modulus.
+#[test]
+fn a_ball_that_is_drawn_back_follows_ting() {
+    let (radius, speed, turn) = (1.0_f64, 0.02, 1.0);
+    let modulus = |t: f64| MODULUS * (1.0 + 3.0 * (-t / 2.0).exp());
+    let model = Bem3d { cells: 129, tolerance: 1e-7, time_tolerance: 1e-4, ..Bem3d::DEFAULT };
+    let scene = scene(ball(), Boundary::Free, SOLID);
+    let times = [0.5, 1.0, 1.15, 1.3, 1.45];
+    let approach = |t: f64| speed * if t < turn { t } else { 2.0 * turn - t };
+    let states = history(&model, &scene, &times.map(|t| (t, Load::approach(approach(t)))));
+    // int of the modulus over the age.
+    let integral = |t: f64| MODULUS * (t + 6.0 * -(-t / 2.0).exp_m1());
+    for (t, state) in times.into_iter().zip(states) {
+        let earlier = if t <= turn {
+            t
+        } else {
+            // int_{t1}^{turn} E(t - s) ds = int_turn^t E(t - s) ds.
+            let (mut low, mut high) = (0.0, turn);
+            for _ in 0..60 {
+                let middle = 0.5 * (low + high);
+                let rising = integral(t - middle) - integral(t - turn);
+                if rising > integral(t - turn) { low = middle } else { high = middle }
+            }
+            low
+        };
+        let points = 20_000;
+        let step = earlier / f64::from(points);
+        let force: f64 = (0..points)
+            .map(|k| (f64::from(k) + 0.5) * step)
+            .map(|s| modulus(t - s) * (speed * s).sqrt() * 1.5 * speed * step)
+            .sum::<f64>()
+            * 4.0
+            / 3.0
+            * radius.sqrt();
+        assert_relative_eq!(state.force, force, max_relative = 5e-3);
+        let area = std::f64::consts::PI * radius * speed * earlier;
+        assert_relative_eq!(state.resolution.unwrap().corrected_area.unwrap(), area, max_relative = 0.02);
+    }
+}
+
+/// A body that was pressed recovers after the contact is lost, and may be met again.
+#[test]
+fn a_contact_that_is_lost_recovers() {
+    let mut viscous = scene(ball(), Boundary::Free, SOLID);
+    viscous.outputs.gap = true;
+    viscous.outputs.displacement = true;
+    let force = Load::force(0.02);
+    let steps = [
+        (0.0, force),
+        (3.0, force),
+        (3.0, Load::force(0.0)),
+        (3.1, Load::force(0.0)),
+        (90.0, Load::force(0.0)),
+    ];
+    let states = history(&MODEL, &viscous, &steps);
+    for (state, next) in states[2..].iter().zip(&states[3..]) {
+        assert_eq!((state.force, state.area), (0.0, Some(0.0)));
+        // What is left of the indentation shrinks.
+        let deepest =
+            |state: &ContactState| state.displacement().unwrap().values().iter().copied().fold(0.0, f64::max);
+        assert!(deepest(next) < deepest(state) && deepest(next) >= 0.0);
+    }
+    let left = states[4].displacement().unwrap().values().iter().copied().fold(0.0, f64::max);
+    assert!(left < 1e-4 * states[1].approach.unwrap(), "{left}");
+    for state in &states {
+        assert!(state.gap().unwrap().values().iter().all(|gap| *gap > -1e-9));
+    }
+    let approach = |d: f64| Load::approach(d);
+    let back = [
+        (0.0, approach(0.02)),
+        (1.0, approach(0.02)),
+        (1.0, approach(0.0)),
+        (2.0, approach(0.012)),
+        (2.0, approach(0.02)),
+    ];
+    let states = history(&MODEL, &viscous, &back);
+    assert_eq!(states[2].force, 0.0);
+    assert!(states[3].force > 0.0 && states[4].force > states[3].force);
+}
+
+/// Restored from its memory in the middle, a history goes on to the same bits.
+#[test]
+fn a_restored_history_goes_on_to_the_same_bits() {
+    let viscous = scene(rough(), Boundary::Periodic, SOLID);
+    let loads = [(0.0, 0.01), (0.7, 0.02), (1.5, 0.005), (1.5, 0.01), (4.0, 0.012)];
+    let loads = loads.map(|(time, force)| (time, Load::force(force)));
+    let whole = history(&MODEL, &viscous, &loads);
+    for kept in 1..loads.len() {
+        let mut first = MODEL.prepare(&viscous, 3).unwrap();
+        for &(time, load) in &loads[..kept] {
+            first.advance(Step::new(time, load)).unwrap();
+        }
+        let memory = first.memory().unwrap().unwrap();
+        let mut second = MODEL.prepare(&viscous, 3).unwrap();
+        second.recall(&memory).unwrap();
+        for (&(time, load), expected) in loads[kept..].iter().zip(&whole[kept..]) {
+            assert_eq!(second.advance(Step::new(time, load)).unwrap(), *expected);
+        }
+        let mut elastic = viscous.clone();
+        elastic.effects.rheology = Rheology::Elastic;
+        assert!(MODEL.prepare(&elastic, 3).unwrap().recall(&memory).is_err());
+    }
+}
+
+/// A cycle of the load takes energy, which is less in very slow and very fast ones.
+#[test]
+fn slow_and_fast_cycles_lose_less() {
+    let viscous = scene(ball(), Boundary::Free, SOLID);
+    let loss = |period: f64| {
+        let steps: Vec<_> = (0..=60)
+            .map(|k| {
+                let share = f64::from(k) / 20.0;
+                let wave = 1.0 - (std::f64::consts::TAU * share).cos();
+                (period * share, Load::approach(0.01 + 0.005 * wave))
+            })
+            .collect();
+        let states = history(&Bem3d { cells: 33, ..MODEL }, &viscous, &steps);
+        let last = &states[40..];
+        let lost: f64 = last
+            .windows(2)
+            .map(|pair| {
+                0.5 * (pair[0].force + pair[1].force)
+                    * (pair[1].approach.unwrap() - pair[0].approach.unwrap())
+            })
+            .sum();
+        let (least, most) =
+            last.iter().fold((f64::MAX, 0.0_f64), |(a, b), s| (a.min(s.force), b.max(s.force)));
+        lost / ((most - least) * 0.01)
+    };
+    let [fast, near, slow] = [0.05, 8.0, 800.0].map(loss);
+    assert!(fast > 0.0 && slow > 0.0 && near > 3.0 * fast && near > 3.0 * slow, "{fast} {near} {slow}");
+}
+
+#[test]
+fn what_has_no_answer_is_refused() {
+    let refused = |scene: &Scene, load: Load| match MODEL.prepare(scene, 3) {
+        Ok(mut contact) => contact.advance(Step::new(0.0, load)).unwrap_err().to_string(),
+        Err(error) => error.to_string(),
+    };
+    let force = Load::force(0.01);
+    let voigt = scene(ball(), Boundary::Free, Rheology::KelvinVoigt { viscosity: 1.0 });
+    assert!(refused(&voigt, force).contains("give the load a time"));
+    let mut stiff = scene(ball(), Boundary::Free, SOLID);
+    stiff.outputs.stiffness = true;
+    assert!(refused(&stiff, force).contains("stiffness of a viscoelastic body"));
+    let mut hard = scene(ball(), Boundary::Free, SOLID);
+    hard.effects.hardness = Hardness::Limit { pressure: 1.0 };
+    assert!(refused(&hard, force).contains("together"), "{}", refused(&hard, force));
+    let mut coated = scene(ball(), Boundary::Free, SOLID);
+    let base = LayerBase::HalfSpace { young: 1.0, poisson: 0.3 };
+    coated.effects.layer = Some(Layer { thickness: 0.1, young: MODULUS * 0.91, poisson: 0.3, base });
+    assert!(refused(&coated, force).contains("relax as the layer does"));
+    let bodies = Pair {
+        first: Body::Elastic { young: 2.0 * MODULUS, poisson: 0.0 },
+        second: Body::Elastic { young: 2.0 * MODULUS, poisson: 0.0 },
+    };
+    let mut two = scene(ball(), Boundary::Free, SOLID);
+    two.pair = Some(bodies);
+    assert!(refused(&two, force).contains("one has to be rigid"));
+    let tolerance = Bem3d { time_tolerance: 0.0, ..MODEL };
+    assert!(tolerance.prepare(&scene(ball(), Boundary::Free, SOLID), 0).is_err());
+}
+
+/// Kelvin and Voigt's body has steps of first order, whose error is controlled all the same.
+#[test]
+fn a_dashpot_in_parallel() {
+    let voigt = scene(ball(), Boundary::Free, Rheology::KelvinVoigt { viscosity: 2.0 });
+    let force = 0.02;
+    let times = [0.5, 3.0, 40.0];
+    let states = history(&MODEL, &voigt, &times.map(|time| (time, Load::force(force))));
+    // The force rises in the first half unit of time: int (1 - exp(-(t - s)/2)) ds / 0.5.
+    let crept = |t: f64| 1.0 - ((-(t - 0.5) / 2.0_f64).exp() - (-t / 2.0_f64).exp()) * 2.0 / 0.5;
+    let mut elastic = MODEL.prepare(&scene(ball(), Boundary::Free, Rheology::Elastic), 3).unwrap();
+    for (time, state) in times.into_iter().zip(states) {
+        let expected = elastic.solve(Load::force(force * crept(time))).unwrap();
+        let error = state.viscoelastic.unwrap().distance_time_error;
+        assert_relative_eq!(
+            state.approach.unwrap(),
+            expected.approach.unwrap(),
+            max_relative = 1.5 * error + 1e-6
+        );
+        assert!(error < 0.03, "{error}");
+    }
+}
