@@ -101,7 +101,8 @@ fn pressed(contact: &mut dyn PreparedContact, scene: &Scene) -> Result<ContactSt
     if !needs_path {
         return contact.solve(normal);
     }
-    contact.advance(Step::new(0.0, normal))?;
+    // A dashpot in parallel takes no load in no time.
+    contact.advance(Step::new(0.5, normal))?;
     let friction = scene.effects.friction != Friction::Off;
     let tangential = if friction { Tangential::force_along_x(1e-4) } else { Tangential::default() };
     contact.advance(Step::new(1.0, normal.with_tangential(tangential)))

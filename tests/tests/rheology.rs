@@ -149,3 +149,31 @@ fn arms_without_weight_and_arms_that_never_relax_are_elastic() {
         assert_relative_eq!(maxwell, elastic(d), max_relative = 1e-7 + tolerance);
     }
 }
+
+/// Boundary elements beside the closed form of a ball, to the error of the cells and of the steps of time: approach,
+/// force and contact radius of histories by force and by approach.
+#[test]
+fn boundary_elements_follow_the_closed_form() {
+    let model = bem3d::Bem3d { cells: 129, tolerance: 1e-7, ..bem3d::Bem3d::DEFAULT };
+    let ball = Surface::Sphere { radius: 1.0, size: 0.6.into() };
+    let mut scene = scene(ball, &series());
+    scene.outputs.area = true;
+    let force = |t: f64, f: f64| Step::new(t, Load::force(f));
+    let approach = |t: f64, d: f64| Step::new(t, Load::approach(d));
+    let paths = [
+        vec![force(0.0, 0.02), force(1.0, 0.02), force(6.0, 0.05), force(30.0, 0.05)],
+        vec![approach(1.0, 0.01), approach(2.0, 0.03), approach(20.0, 0.03)],
+    ];
+    for path in paths {
+        let mut contact = model.prepare(&scene, 0).unwrap();
+        let mut exact = Viscoelastic.prepare(&scene, 0).unwrap();
+        for step in path {
+            let (found, exact) = (contact.advance(step).unwrap(), exact.advance(step).unwrap());
+            // The grid has its own error of half a per cent, of approaches less.
+            assert_relative_eq!(found.force, exact.force, max_relative = 6e-3);
+            assert_relative_eq!(found.approach.unwrap(), exact.approach.unwrap(), max_relative = 4e-3);
+            let area = found.resolution.unwrap().corrected_area.unwrap();
+            assert_relative_eq!(area, exact.area.unwrap(), max_relative = 0.02);
+        }
+    }
+}

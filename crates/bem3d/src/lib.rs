@@ -90,6 +90,28 @@
 //! too large for the range are refused, and the error has the side that would be small enough. Results with
 //! Dugdale's law are of first order in the cell.
 //!
+//! ## Viscoelastic bodies
+//!
+//! With a [`Rheology`] a scene is a history in time, and each step of time is one elastic contact: the modulus is
+//! that of the step, and the heights are displaced by what the history has left (`model::viscous`). A load in no
+//! time meets the glassy body. Steps are as long as [`Bem3d::time_tolerance`] allows, and each state has the
+//! difference of its force, distance and area from the same history in steps twice as long, and the work of the
+//! load ([`ViscoelasticState`]).
+//!
+//! ```
+//! use bem3d::{Bem3d, ContactModel, Load, Relaxing, Rheology, Scene, Step, Surface};
+//! // A ball on a rubber, pressed at once and held: the approach creeps.
+//! let mut scene = Scene::new(Surface::Sphere { radius: 1.0, size: 1.0.into() }, 1.0);
+//! scene.effects.rheology = Rheology::StandardSolid { arm: Relaxing { weight: 3.0, time: 2.0 } };
+//! scene.outputs.stiffness = false;
+//! let mut contact = Bem3d { cells: 32, ..Bem3d::default() }.prepare(&scene, 0)?;
+//! let first = contact.advance(Step::new(0.0, Load::force(0.01)))?;
+//! let later = contact.advance(Step::new(5.0, Load::force(0.01)))?;
+//! assert!(later.approach > first.approach);
+//! assert!(later.viscoelastic.unwrap().distance_time_error < 5e-3);
+//! # Ok::<(), bem3d::Error>(())
+//! ```
+//!
 //! # How it solves a load
 //!
 //! On a known contact set the problem is linear. The unknown is the set, and an outer iteration over contact
@@ -169,7 +191,8 @@
 //! gets the tangent of the last state (`LastState`). A load that is solved again to a tighter tolerance goes
 //! on with the gap of its state (`Continuation`).
 //!
-//! **Three kinds of state depend on the path.** `model/memory.rs` adds the indentation of a hardness to the
+//! **Four kinds of state depend on the path.** `model/viscous.rs` steps through the time of a viscoelastic body.
+//! `model/memory.rs` adds the indentation of a hardness to the
 //! heights, with and without attraction. `model/adhesive.rs` goes from equilibrium to equilibrium.
 //! `model/increment.rs` takes one increment of friction a step, under the contact pressures of either.
 //! `model/path_memory.rs` holds all that the next step follows from, and an effect that remembers more must add
@@ -266,8 +289,9 @@
 //!
 //! These are refused at `prepare`:
 //!
-//! * adhesion of short range together with a hardness or with a coefficient of friction, full coupling of friction
-//!   together with a hardness, with adhesion or with a shear strength, and rheology;
+//! * adhesion of short range together with a hardness or with a coefficient of friction, and full coupling of
+//!   friction together with a hardness, with adhesion or with a shear strength;
+//! * rheology together with adhesion or friction, and a stiffness of a viscoelastic body;
 //! * adhesion and friction of profiles;
 //! * displacement fields, conductances and loads by approach, for profiles with free boundaries.
 

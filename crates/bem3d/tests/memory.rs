@@ -5,7 +5,7 @@
 
 use bem3d::{
     Adhesion, AdhesionLaw, Bem3d, Body, Boundary, ContactModel, Coupling, Friction, Hardness, Load, Output,
-    Pair, Scene, SelfAffine, Surface,
+    Pair, PronySeries, Relaxing, Rheology, Scene, SelfAffine, Step, Surface,
 };
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::Mutex;
@@ -178,5 +178,37 @@ fn effects() {
                 assert!((1.0..=WITH_EFFECTS).contains(&ratio), "{name}, {boundary:?}: {ratio}");
             }
         }
+    }
+}
+
+#[test]
+fn a_viscoelastic_history() {
+    let _alone = alone();
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build().unwrap();
+    for (boundary, force_bar) in
+        [(Boundary::Free, 100.0), (Boundary::Periodic, 30.0), (Boundary::Periodic, 1.0)]
+    {
+        let mut scene = scene(boundary, |_| ());
+        (scene.pair, scene.outputs.stiffness) = (None, false);
+        let arms: Vec<_> = [0.1, 1.0, 10.0].map(|time| Relaxing { weight: 1.0, time }).to_vec();
+        scene.effects.rheology = Rheology::Prony(PronySeries::new(&arms).unwrap());
+        let mut contact = Bem3d { cells: 257, tolerance: 1e-5, ..Bem3d::DEFAULT }.prepare(&scene, 7).unwrap();
+        let load = Load::force(contact.normalisation().force(force_bar).unwrap());
+        let told = contact.required_memory(load).unwrap().bytes;
+        let held = NOW.load(Ordering::Relaxed);
+        PEAK.store(held, Ordering::Relaxed);
+        pool.install(|| {
+            for time in [0.0, 1.0, 5.0] {
+                contact.advance(Step::new(time, load)).unwrap();
+            }
+        });
+        let peak = (PEAK.load(Ordering::Relaxed) - held) as f64;
+        let ratio = told / peak;
+        println!(
+            "{boundary:?} {force_bar}: told {:.1} MB, peak {:.1} MB, {ratio:.2}",
+            1e-6 * told,
+            1e-6 * peak
+        );
+        assert!((1.0..=2.0 * WITH_EFFECTS).contains(&ratio), "{boundary:?} {force_bar}: {ratio}");
     }
 }

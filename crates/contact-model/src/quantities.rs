@@ -497,6 +497,9 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
         => |s, _| s.plastic.map(|p| p.volume).into();
     "plastic_work" "plastic work" "" Si("J"); Effect("hardness"); "energy dissipated in the plastic indentation, hardness times volume"
         => |s, _| s.plastic.map(|p| p.dissipated).into();
+    "work" "work of the load" "W" Si("J"); VISCOELASTIC;
+        "work of the normal load since the first step: what the body holds and what has been dissipated in it"
+        => |s, _| s.viscoelastic.map(|v| v.work).into();
     "branch" "branch" "" Word; Effect("adhesion"); "whether the bodies were brought nearer or drawn apart"
         { average: Average::No, drawn: false }
         => |s, _| s.adhesive.map(|a| a.branch.as_str()).into();
@@ -606,23 +609,23 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
           average: Average::No, drawn: false }
         => |s, _| s.report.certificate.force_error.into();
     "force_time_error" "error of the force by steps of time" "" One; VISCOELASTIC;
-        "relative difference of the force from that of the same history in steps of time twice as long"
+        "estimated relative error of the force by steps of time: its difference from that of the same history in steps twice as long"
         { role: Role::Residual("steps of time are short enough for the force: its relative difference from that of steps twice as long"),
           average: Average::No, drawn: false }
         => |s, _| s.viscoelastic.map(|v| v.force_time_error).into();
     "approach_time_error" "error of the approach by steps of time" "" One; AskedBy::All(&[FreeBoundary, VISCOELASTIC]);
-        "relative difference of the approach from that of the same history in steps of time twice as long"
+        "estimated relative error of the approach by steps of time: its difference from that of the same history in steps twice as long"
         { role: Role::Residual("steps of time are short enough for the approach: its relative difference from that of steps twice as long"),
           average: Average::No, drawn: false }
         => |s, _| s.approach.and(s.viscoelastic).map(|v| v.distance_time_error).into();
     "mean_gap_time_error" "error of the mean gap by steps of time" "" One;
         AskedBy::All(&[AskedBy::Output(Output::MeanGap), VISCOELASTIC]);
-        "relative difference of the mean gap from that of the same history in steps of time twice as long"
+        "estimated relative error of the mean gap by steps of time: its difference from that of the same history in steps twice as long"
         { role: Role::Residual("steps of time are short enough for the mean gap: its relative difference from that of steps twice as long"),
           average: Average::No, drawn: false }
         => |s, _| s.mean_gap.and(s.viscoelastic).map(|v| v.distance_time_error).into();
     "area_time_error" "error of the area by steps of time" "" One; AskedBy::All(&[AskedBy::Output(Output::Area), VISCOELASTIC]);
-        "relative difference of the number of cells in contact from that of the same history in steps of time twice as long"
+        "estimated relative error of the area by steps of time: the difference of the number of cells from that of the same history in steps twice as long"
         { role: Role::Residual("steps of time are short enough for the area: the relative difference of the number of cells from that of steps twice as long"),
           average: Average::No, drawn: false }
         => |s, _| s.viscoelastic.map(|v| v.area_time_error).into();

@@ -347,6 +347,8 @@ pub struct ViscoelasticState {
     pub area_time_error: f64,
     /// Number of steps of time since the state before; 0 for a load in no time.
     pub time_steps: usize,
+    /// Work of the normal load since the first step: what the body holds, and what has been dissipated in it.
+    pub work: f64,
 }
 
 impl ViscoelasticState {
@@ -355,7 +357,13 @@ impl ViscoelasticState {
         [force_time_error, distance_time_error, area_time_error]: [f64; 3],
         time_steps: usize,
     ) -> Self {
-        Self { force_time_error, distance_time_error, area_time_error, time_steps }
+        Self { force_time_error, distance_time_error, area_time_error, time_steps, work: 0.0 }
+    }
+
+    /// With the work of the load.
+    #[must_use]
+    pub fn with_work(self, work: f64) -> Self {
+        Self { work, ..self }
     }
 }
 

@@ -1,6 +1,8 @@
 //! The memory of a path with a hardness: the indentation remains, and unloading is elastic until the old
 //! pressures are reached again.
 
+use crate::geometry::{CellSet, Grid};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The indentation of a surface, and the last state of its path.
@@ -57,5 +59,38 @@ impl IndentationMemory {
     pub fn advance(&mut self, force: f64, tolerance: f64) {
         self.rising = self.rises_to(force, tolerance);
         self.force = force;
+    }
+}
+
+/// The memory of a hardness, as it is stored.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Indented {
+    cells: CellSet,
+    depth: Vec<f64>,
+    force: f64,
+    rising: bool,
+}
+
+impl Indented {
+    pub(super) fn of(grid: Grid, memory: &IndentationMemory) -> Self {
+        let cells = CellSet::of_grid(grid, &memory.indentation, |depth| depth > 0.0);
+        let depth = cells.index(grid).map(|i| memory.indentation[i]).collect();
+        let (force, rising) = memory.reached();
+        Self { cells, depth, force, rising }
+    }
+
+    /// Restores the memory of a surface without an indentation.
+    pub(super) fn restore(&self, grid: Grid, memory: &mut IndentationMemory) {
+        for (i, depth) in self.cells.index(grid).zip(&self.depth) {
+            memory.indentation[i] = *depth;
+        }
+        memory.recall(self.force, self.rising);
+    }
+
+    pub(super) fn fits(&self, grid: Grid) -> bool {
+        self.cells.is_on(grid)
+            && self.force.is_finite()
+            && self.depth.len() == self.cells.len()
+            && self.depth.iter().all(|depth| depth.is_finite())
     }
 }

@@ -223,10 +223,6 @@ const NOT_COMBINED: &[NotCombined] = &[
         reason: "how tangential tractions displace a layer is not known here",
     },
     NotCombined {
-        effects: [RHEOLOGY, &[Effect::Hardness]],
-        reason: "not solved, as the indentation would have to be told from what creeps",
-    },
-    NotCombined {
         effects: [RHEOLOGY, ADHESION],
         reason: "not solved, as the attraction would have a history too; at an edge that opens or closes with a speed the work of \
                  adhesion depends on its range",

@@ -9,7 +9,7 @@
 
 use super::adhesive::{AdhesivePath, Last};
 use super::load::{LoadSequence, ScaledLoad};
-use super::memory::IndentationMemory;
+use super::memory::Indented;
 use super::prepared::PreparedSurface;
 use super::viscous::{HistoryMemory, ViscousHistory};
 use crate::active_set::{Candidates, LastState};
@@ -40,15 +40,6 @@ pub(super) struct PlaceInLoads {
     pub solved: Option<ScaledLoad>,
     /// Time of the last step of a path.
     pub time: f64,
-}
-
-/// The memory of a hardness.
-#[derive(Serialize, Deserialize)]
-struct Indented {
-    cells: CellSet,
-    depth: Vec<f64>,
-    force: f64,
-    rising: bool,
 }
 
 /// The memory of friction.
@@ -108,10 +99,7 @@ impl<'a> Remembered<'a> {
             return false;
         }
         if let (Some(indented), Some(memory)) = (hardness, &mut surface.memory) {
-            for (i, depth) in indented.cells.index(grid).zip(&indented.depth) {
-                memory.indentation[i] = *depth;
-            }
-            memory.recall(indented.force, indented.rising);
+            indented.restore(grid, memory);
             surface.problem.candidates = Candidates::new(grid, memory.indented());
         }
         if let (Some(slipped), Some(sliding)) = (friction, &mut surface.sliding) {
@@ -125,19 +113,6 @@ impl<'a> Remembered<'a> {
             history.recall(memory.into_owned());
         }
         true
-    }
-}
-
-impl Indented {
-    fn of(grid: Grid, memory: &IndentationMemory) -> Self {
-        let cells = CellSet::of_grid(grid, &memory.indentation, |depth| depth > 0.0);
-        let depth = cells.index(grid).map(|i| memory.indentation[i]).collect();
-        let (force, rising) = memory.reached();
-        Self { cells, depth, force, rising }
-    }
-
-    fn fits(&self, grid: Grid) -> bool {
-        self.cells.is_on(grid) && self.force.is_finite() && are_of(&self.cells, 1, &[&self.depth])
     }
 }
 

@@ -3,7 +3,7 @@
 //! The constants are peaks of allocated bytes beyond what a prepared contact holds, rounded up. They count plans,
 //! tables, vectors, coarser grids and requested fields (2026-11). `tests/memory.rs` compares them with real solves.
 
-use contact_model::{Adhesion, Cells, Effects, Friction, Output, Outputs};
+use contact_model::{Adhesion, Cells, Effects, Friction, Output, Outputs, Rheology};
 
 /// A contact that fills the grid, bytes for each cell ...
 const DENSE: f64 = 216.0;
@@ -15,6 +15,10 @@ const FRICTION: f64 = 300.0;
 const TANGENTIAL_STIFFNESS: f64 = 210.0;
 /// Attraction, bytes for each cell.
 const ATTRACTION: f64 = 200.0;
+/// The histories of a viscoelastic body: for each cell in contact and each arm of its relaxation, and once more ...
+const HISTORY: f64 = 56.0;
+/// ... and the displacement that they leave, bytes for each cell of the grid.
+const CREPT: f64 = 110.0;
 /// Rough contact with a share s of the cells takes this multiple of `sqrt(s)` of what contact everywhere takes: its
 /// window is the grid, and its candidates are many times as many cells as touch.
 const SCATTERED: f64 = 2.2;
@@ -57,13 +61,20 @@ pub fn solve_bytes(effects: &Effects, outputs: &Outputs, cells: Cells, contact: 
         of_cell += ATTRACTION;
         share = 1.0;
     }
+    let mut always = TABLE;
+    if let Ok(Some(spectrum)) = effects.rheology.spectrum(1.0) {
+        of_cell += HISTORY * (1 + spectrum.arms.len()) as f64;
+        always += CREPT;
+    }
     let dense = of_cell * count + DENSE_SIDE * count.sqrt();
     let components = outputs.asked().filter_map(Output::field).map(|field| field.components).sum::<usize>();
-    let mut always = TABLE + 8.0 * components as f64;
+    always += 8.0 * components as f64;
     if outputs.gap || outputs.displacement {
         always += DISPLACED;
     }
-    (share * dense + always * count).min(dense)
+    // Of an elastic body, contact everywhere needs all that lighter loads do.
+    let most = if effects.rheology == Rheology::Elastic { dense } else { f64::INFINITY };
+    (share * dense + always * count).min(most)
 }
 
 /// Memory of factors in bytes: of the largest set of cells that may be factored on the grid, and of sets on coarser

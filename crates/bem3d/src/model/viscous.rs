@@ -11,9 +11,10 @@
 //! The error of the steps is measured by a second history with steps twice as long.
 
 use super::load::{ScaledLoad, ScaledNormal};
+use super::memory::{IndentationMemory, Indented};
 use super::options::NAME;
 use super::prepared::PreparedSurface;
-use crate::active_set::{Candidates, LastState};
+use crate::active_set::{Bounds, Candidates, LastState};
 use crate::geometry::{CellSet, Grid};
 use crate::real::{sum_of_pairs, update};
 use contact_model::{
@@ -21,6 +22,7 @@ use contact_model::{
     Result, Rheology, Scene, Stop, ViscoelasticState,
 };
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// A step of time is cut to no less than this share of the piece of the path in which it lies.
@@ -42,12 +44,21 @@ pub(super) struct HistoryMemory {
     /// Length of the next step, where one is known.
     step: Option<f64>,
     /// The largest response so far: force, and approach.
-    largest: Response,
+    largest: LoadResponse,
+    /// Work of the load along the fine track, in the units of the modulus E* (over pi).
+    work: f64,
+}
+
+impl HistoryMemory {
+    /// That of a track before any load.
+    fn new(fine: ViscousTrack) -> Self {
+        Self { fine, coarse: None, step: None, largest: LoadResponse::default(), work: 0.0 }
+    }
 }
 
 /// What a load brings about.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-struct Response {
+struct LoadResponse {
     force: f64,
     /// The approach; of a periodic surface by how much the mean gap has fallen from that of the first touch.
     approach: f64,
@@ -63,12 +74,14 @@ pub(super) struct ViscousTrack {
     arms: Vec<Vec<f64>>,
     /// The last contact, whose pressures are the true ones.
     last: Option<LastState>,
-    reached: Reached,
+    /// What a hardness has left.
+    indented: Option<Indented>,
+    reached: TrackEnd,
 }
 
 /// The load at which a track has arrived, in the units of a surface with the modulus E*.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-struct Reached {
+struct TrackEnd {
     force: f64,
     approach: f64,
     mean_gap: f64,
@@ -122,7 +135,7 @@ impl ViscousTrack {
         let mean_gap = surface.mean - surface.problem.candidates.range().first;
         Self {
             arms: vec![Vec::new(); spectrum.arms.len()],
-            reached: Reached { mean_gap, ..Reached::default() },
+            reached: TrackEnd { mean_gap, ..TrackEnd::default() },
             ..Self::default()
         }
     }
@@ -156,7 +169,7 @@ impl ViscousTrack {
                 arm
             })
             .collect();
-        Self { cells, pressure, arms, last: None, reached: Reached::default() }
+        Self { cells, pressure, arms, ..Self::default() }
     }
 
     /// Whether its cells and numbers are those of a surface and a material.
@@ -164,12 +177,13 @@ impl ViscousTrack {
         let sound = |values: &Vec<f64>| {
             values.len() == self.cells.len() && values.iter().all(|value| value.is_finite())
         };
-        let Reached { force, approach, mean_gap, .. } = self.reached;
+        let TrackEnd { force, approach, mean_gap, .. } = self.reached;
         self.cells.is_on(grid)
             && self.arms.len() == arms
             && sound(&self.pressure)
             && self.arms.iter().all(sound)
             && self.last.as_ref().is_none_or(|last| last.fits(grid))
+            && self.indented.as_ref().is_none_or(|indented| indented.fits(grid))
             && [force, approach, mean_gap].into_iter().all(f64::is_finite)
     }
 }
@@ -182,6 +196,8 @@ pub(super) struct ViscousHistory {
     elastic: Nondimensionalisation,
     /// Undeformed gaps of the surface, and their mean.
     virgin: (Arc<Vec<f64>>, f64),
+    /// The hardness, in the units of the modulus E*.
+    hardness: Option<f64>,
     /// Largest error that one step of time adds, relative.
     tolerance: f64,
     /// The law of a step; another one in comparisons with other programs.
@@ -237,9 +253,10 @@ impl ViscousHistory {
             spectrum,
             elastic: surface.nondimensional,
             virgin: (surface.problem.candidates.shared(), surface.mean),
+            hardness: surface.hardness,
             tolerance: options.time_tolerance,
             law: StepLaw::new,
-            memory: HistoryMemory { fine, coarse: None, step: None, largest: Response::default() },
+            memory: HistoryMemory::new(fine),
         }))
     }
 
@@ -247,7 +264,7 @@ impl ViscousHistory {
     pub(super) fn begin(&mut self, surface: &mut PreparedSurface) {
         self.rest(surface);
         let fine = ViscousTrack::new(surface, &self.spectrum);
-        self.memory = HistoryMemory { fine, coarse: None, step: None, largest: Response::default() };
+        self.memory = HistoryMemory::new(fine);
     }
 
     /// What the next step follows from.
@@ -257,13 +274,14 @@ impl ViscousHistory {
 
     /// Whether a memory belongs to this history.
     pub(super) fn fits(&self, memory: &HistoryMemory, grid: Grid) -> bool {
-        let HistoryMemory { fine, coarse, step, largest } = memory;
+        let HistoryMemory { fine, coarse, step, largest, work } = memory;
         let arms = self.spectrum.arms.len();
         fine.fits(grid, arms)
             && coarse.as_ref().is_none_or(|coarse| coarse.fits(grid, arms))
             && step.is_none_or(|step| step.is_finite() && step > 0.0)
             && largest.force.is_finite()
             && largest.approach.is_finite()
+            && work.is_finite()
     }
 
     /// Goes on from a memory that fits.
@@ -277,8 +295,37 @@ impl ViscousHistory {
         surface.nondimensional = self.elastic;
         surface.problem.candidates = Candidates::new(surface.problem.grid(), Arc::clone(virgin));
         surface.problem.coarser = None;
-        (surface.mean, surface.last) = (*mean, None);
+        (surface.mean, surface.last, surface.memory) = (*mean, None, None);
         surface.crept = Vec::new();
+        surface.limit_pressure(self.hardness);
+    }
+
+    /// The surface at the beginning of a step of a track, and H on the cells of the track.
+    ///
+    /// # Errors
+    /// [`Error::Stopped`] by the stop; [`Error::Domain`] where no `f64` holds the modulus of the step.
+    fn begin_step(
+        &self,
+        surface: &mut PreparedSurface,
+        track: &ViscousTrack,
+        law: &StepLaw,
+        stop: Stop<'_>,
+    ) -> Result<Vec<f64>> {
+        self.rest(surface);
+        surface.nondimensional = self.elastic.with_modulus_times(law.modulus)?;
+        surface.last = track.last.as_ref().map(|last| last.scaled(law.modulus.recip()));
+        if let Some(hardness) = self.hardness {
+            surface.limit_pressure(Some(hardness / law.modulus));
+            let mut memory = IndentationMemory::new(Arc::clone(&self.virgin.0));
+            if let Some(indented) = &track.indented {
+                indented.restore(surface.problem.grid(), &mut memory);
+                surface.problem.candidates = Candidates::new(surface.problem.grid(), memory.indented());
+            }
+            surface.memory = Some(memory);
+        }
+        let left = track.left(law);
+        surface.creep(&track.cells, &left, stop)?;
+        Ok(left)
     }
 
     /// The state after a piece of the path in which the load goes straight to this one. A load that was stopped, or
@@ -324,9 +371,10 @@ impl ViscousHistory {
             }
             surface.outputs = wanted;
             let (state, fine) = self.step(surface, &memory.fine, jump, &mut work, stop)?;
+            memory.work += work_between(surface, &memory.fine, &fine, &mut work, stop)?;
             memory.fine = fine;
             memory.largest = self.largest(&memory, memory.largest);
-            return Ok((Self::finished(surface, state, &memory, load, work), memory));
+            return Ok((self.finished(surface, state, &memory, load, work)?, memory));
         }
         let start = memory.fine.reached;
         let at = |share: f64| ScaledLoad { normal: start.towards(load.normal, share), ..load };
@@ -351,13 +399,14 @@ impl ViscousHistory {
             let whole = TimeStep { duration: now, load: at(end) };
             let coarse = self.step(surface, coarse, whole, &mut work, stop)?.1;
             let half = TimeStep { duration: 0.5 * now, load: at(middle) };
-            let fine = self.step(surface, &memory.fine, half, &mut work, stop)?.1;
+            let (_, first) = self.step(surface, &memory.fine, half, &mut work, stop)?;
             if ends {
                 surface.outputs = wanted;
             }
             let half = TimeStep { duration: 0.5 * now, load: at(end) };
-            let (state, fine) = self.step(surface, &fine, half, &mut work, stop)?;
-            let next = HistoryMemory { fine, coarse: Some(coarse), step: None, largest: scale };
+            let (state, fine) = self.step(surface, &first, half, &mut work, stop)?;
+            let next =
+                HistoryMemory { fine, coarse: Some(coarse), step: None, largest: scale, work: memory.work };
             scale = self.largest(&next, scale);
             let added = (self.error(&next, load, scale) - self.error(&memory, load, scale)).abs();
             let ratio = (self.tolerance / added).powf(STEP_ORDER.recip()) * CAUTION;
@@ -371,30 +420,37 @@ impl ViscousHistory {
             done += now;
             // A step that the end of the piece cut short says little about the longest possible one.
             let kept = if ends { better.max(step.min(STEP_CHANGE.1 * now)) } else { better };
-            memory = HistoryMemory { step: Some(kept), largest: self.largest(&next, memory.largest), ..next };
+            let of_load = work_between(surface, &memory.fine, &first, &mut work, stop)?
+                + work_between(surface, &first, &next.fine, &mut work, stop)?;
+            memory = HistoryMemory {
+                step: Some(kept),
+                largest: self.largest(&next, memory.largest),
+                work: memory.work + of_load,
+                ..next
+            };
             step = kept;
             if ends {
-                return Ok((Self::finished(surface, state, &memory, load, work), memory));
+                return Ok((self.finished(surface, state, &memory, load, work)?, memory));
             }
         }
     }
 
     /// The larger of responses, and those of a history.
-    fn largest(&self, memory: &HistoryMemory, before: Response) -> Response {
+    fn largest(&self, memory: &HistoryMemory, before: LoadResponse) -> LoadResponse {
         let now = self.response(&memory.fine);
-        Response {
+        LoadResponse {
             force: before.force.max(now.force.abs()),
             approach: before.approach.max(now.approach.abs()),
         }
     }
 
-    fn response(&self, track: &ViscousTrack) -> Response {
-        let Reached { force, approach, mean_gap, .. } = track.reached;
-        Response { force, approach: approach.max(self.virgin.1 - mean_gap) }
+    fn response(&self, track: &ViscousTrack) -> LoadResponse {
+        let TrackEnd { force, approach, mean_gap, .. } = track.reached;
+        LoadResponse { force, approach: approach.max(self.virgin.1 - mean_gap) }
     }
 
     /// The difference between both histories in what the load leaves free, relative to the largest.
-    fn error(&self, memory: &HistoryMemory, load: ScaledLoad, scale: Response) -> f64 {
+    fn error(&self, memory: &HistoryMemory, load: ScaledLoad, scale: LoadResponse) -> f64 {
         let Some(coarse) = &memory.coarse else { return 0.0 };
         let (fine, coarse) = (self.response(&memory.fine), self.response(coarse));
         let relative = |difference: f64, of: f64| if difference == 0.0 { 0.0 } else { difference.abs() / of };
@@ -405,13 +461,17 @@ impl ViscousHistory {
     }
 
     /// The state at the end of a piece, with the error of its steps.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] where no `f64` holds the work of the load.
     fn finished(
+        &self,
         surface: &PreparedSurface,
         mut state: ContactState,
         memory: &HistoryMemory,
         load: ScaledLoad,
         work: StepWork,
-    ) -> ContactState {
+    ) -> Result<ContactState> {
         let errors = memory.coarse.as_ref().map_or([0.0; 3], |coarse| {
             let (fine, coarse) = (memory.fine.reached, coarse.reached);
             let relative = |fine: f64, coarse: f64| {
@@ -433,7 +493,10 @@ impl ViscousHistory {
         state.report.iterations = work.iterations;
         state.report.applications = work.applications;
         state.report.work.linear_solves = work.linear_solves;
-        state.with_viscoelastic(ViscoelasticState::new(errors, work.steps))
+        // A force times a length.
+        let of_load =
+            self.elastic.approach(self.elastic.force(PI * memory.work.abs())?)?.copysign(memory.work);
+        Ok(state.with_viscoelastic(ViscoelasticState::new(errors, work.steps).with_work(of_load)))
     }
 
     /// A step of one track: its state, and the track at its end.
@@ -447,11 +510,7 @@ impl ViscousHistory {
     ) -> Result<(ContactState, ViscousTrack)> {
         let law = (self.law)(&self.spectrum, step.duration);
         let modulus = law.modulus;
-        self.rest(surface);
-        surface.nondimensional = self.elastic.with_modulus_times(modulus)?;
-        let left = track.left(&law);
-        surface.creep(&track.cells, &left, &self.virgin.0, stop)?;
-        surface.last = track.last.as_ref().map(|last| last.scaled(modulus.recip()));
+        let left = self.begin_step(surface, track, &law, stop)?;
         let load = ScaledLoad { normal: step.load.normal.over(modulus), ..step.load };
         let state = surface.at(load, stop)?;
         work.add(&state);
@@ -468,13 +527,15 @@ impl ViscousHistory {
             (None, ScaledNormal::Force(_)) => surface.problem.candidates.range().first,
         };
         let mean_gap = surface.mean_gap(surface.is_full(&contact), approach, force);
-        next.reached = Reached { force: modulus * force, approach, mean_gap, cells: contact.len() };
+        next.reached = TrackEnd { force: modulus * force, approach, mean_gap, cells: contact.len() };
         next.last = last.map(|last| last.scaled(modulus));
+        let grid = surface.problem.grid();
+        next.indented = surface.memory.as_ref().map(|memory| Indented::of(grid, memory));
         Ok((state, next))
     }
 }
 
-impl Reached {
+impl TrackEnd {
     /// The load at a share of the way from here to another.
     fn towards(self, load: ScaledNormal, share: f64) -> ScaledNormal {
         let between = |from: f64, to: f64| if share >= 1.0 { to } else { from + share * (to - from) };
@@ -514,12 +575,54 @@ impl StepWork {
     }
 }
 
+/// Work of the load between two states of a track, in the units of the modulus E* (over pi): the true pressures on
+/// the mean times the displacement of their cells. Exact in no time, of second order in the step.
+///
+/// # Errors
+/// [`Error::Stopped`] by the stop.
+///
+/// Cost: one application of the kernel.
+fn work_between(
+    surface: &mut PreparedSurface,
+    before: &ViscousTrack,
+    after: &ViscousTrack,
+    work: &mut StepWork,
+    stop: Stop<'_>,
+) -> Result<f64> {
+    let mut pressed = CellSet::default();
+    let ends = [before, after].map(|track| track.last.as_ref());
+    for last in ends.into_iter().flatten() {
+        pressed = pressed.union(&last.contact);
+    }
+    if pressed.is_empty() {
+        return Ok(0.0);
+    }
+    let mut change = after.cells.carry(&before.cells, &before.pressure);
+    for (change, now) in change.iter_mut().zip(&after.pressure) {
+        *change = now - *change;
+    }
+    let (mut moved, operators) = (Vec::new(), &mut surface.problem.operators);
+    operators.exact(&after.cells, &change, &pressed, &mut moved, stop).map_err(Interrupted::without_state)?;
+    work.applications += 1;
+    let mut sum = vec![0.0; pressed.len()];
+    for last in ends.into_iter().flatten() {
+        pressed.add_carried(&last.contact, &last.p, &mut sum);
+    }
+    Ok(0.5 * sum_of_pairs(&sum, &moved, |p, u| p * u))
+}
+
 impl PreparedSurface {
+    /// Bounds the pressure by a hardness in the present units.
+    fn limit_pressure(&mut self, hardness: Option<f64>) {
+        self.hardness = hardness;
+        self.problem.bounds = hardness.map_or(Bounds::Unlimited, Bounds::UpTo);
+    }
+
     /// Displaces the heights by a pressure that a history has left.
     ///
     /// # Errors
     /// [`Error::Stopped`] by the stop.
-    fn creep(&mut self, cells: &CellSet, left: &[f64], virgin: &[f64], stop: Stop<'_>) -> Result<()> {
+    fn creep(&mut self, cells: &CellSet, left: &[f64], stop: Stop<'_>) -> Result<()> {
         if cells.is_empty() {
             return Ok(());
         }
@@ -529,10 +632,10 @@ impl PreparedSurface {
             .operators
             .exact(cells, left, &all, &mut crept, stop)
             .map_err(Interrupted::without_state)?;
-        let mut z = virgin.to_vec();
+        let mut z = self.problem.candidates.z().to_vec();
         update(&mut z, &crept, |z, u| *z += u);
-        let sum = sum_of_pairs(&z, &z, |z, _| if z.is_finite() { z } else { 0.0 });
-        self.mean = sum / self.defined as f64;
+        let of_defined = sum_of_pairs(&z, &crept, |z, u| if z.is_finite() { u } else { 0.0 });
+        self.mean += of_defined / self.defined as f64;
         self.problem.candidates = Candidates::new(grid, Arc::new(z));
         // What the constant in the kernel adds is no displacement.
         let shift = self.problem.operators.table().shift() * left.iter().sum::<f64>();

@@ -116,8 +116,7 @@ fn work_is_stored_or_dissipated() {
             let load = surface.scaled_load(Load::approach(d)).unwrap();
             let step = TimeStep { duration: 3.0 / f64::from(count), load };
             let next = history.step(&mut surface, &track, step, &mut work, &never).unwrap().1;
-            let (before, now) = (track.reached, next.reached);
-            of_load += 0.5 * (before.force + now.force) * (now.approach - before.approach);
+            of_load += work_between(&mut surface, &track, &next, &mut work, &never).unwrap();
             let [stored, now_power] = energies(&surface, &history.spectrum, &next);
             dissipated += 0.5 * (power + now_power) * step.duration;
             (track, power, last) = (next, now_power, stored);

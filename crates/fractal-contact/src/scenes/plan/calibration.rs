@@ -8,7 +8,7 @@ use crate::scenes::read::{
     LoadList, LoadRequest, Numerics, PrescribedLoad, Result, SceneFile, SceneSurface, cells, sampled, step_to,
 };
 use bem3d::{BYTES_PER_CELL, solve_bytes};
-use contact_model::{Adhesion, Cells, ContactState, Coupling, Friction, Surface};
+use contact_model::{Adhesion, Cells, ContactState, Coupling, Friction, Rheology, Surface};
 use mdr1d::BYTES_PER_ELEMENT;
 use std::time::Duration;
 use web_time::Instant;
@@ -40,6 +40,8 @@ const PREPARED_BYTES: f64 = 18.0;
 /// grows with [`TIME_EXPONENT`]: 0.7 to 1.0 us at 513, 0.9 to 1.8 at 2049, 1.5 to 5 at 4097 and 8193
 /// (`data/bench/scaling.csv`, `data/bench/large.csv`). A light contact takes down to a thirtieth of that.
 const DENSE_CELLS: f64 = 513.0;
+/// Solves of a state of a viscoelastic history: three for each step of time, and a step or two for each state.
+const SOLVES_OF_STEPS: f64 = 5.0;
 /// Time with an adhesion of short range over that without at this number of cells a side, by the table of
 /// `book/src/effects-cost.md`: 6 to 9 there, 10 to 31 at 1025. With a finite range it is about a third.
 const FRONTS_CELLS: f64 = 257.0;
@@ -98,7 +100,7 @@ fn seconds_of_sizes(scene: &SceneFile, numerics: &Numerics) -> f64 {
     match numerics {
         Numerics::Bem3d(model) => match rough_sweep(scene, model) {
             Some(seconds) => seconds,
-            None => states * seconds_of_dense(scene, numerics),
+            None => states * steps_of_time(scene) * seconds_of_dense(scene, numerics),
         },
         // The profile has about 49 nodes, each a state of the boundary elements, before the first load.
         Numerics::Equivalent(_) => (states + 49.0) * seconds_of_dense(scene, numerics),
@@ -109,6 +111,11 @@ fn seconds_of_sizes(scene: &SceneFile, numerics: &Numerics) -> f64 {
         }
         _ => 0.0,
     }
+}
+
+/// Solves that a state takes: of a viscoelastic history three for each step of time.
+fn steps_of_time(scene: &SceneFile) -> f64 {
+    if scene.effects.rheology == Rheology::Elastic { 1.0 } else { SOLVES_OF_STEPS }
 }
 
 /// Seconds of all loads by [`seconds_of_rough_sweep`]; `None` for loads and surfaces other than normalised forces

@@ -95,7 +95,9 @@ pub(crate) fn cycles(pieces: &[PathPiece]) -> Vec<[usize; 2]> {
     let mut first = 0;
     while let Some(&begin) = corners.get(first) {
         let load = pieces[begin].end.load;
-        match corners[first + 1..].iter().position(|&end| pieces[end].end.load == load) {
+        // A load that is held, while time passes, makes no cycle.
+        let moves = |end: usize| pieces[begin + 1..end].iter().any(|piece| piece.end.load != load);
+        match corners[first + 1..].iter().position(|&end| pieces[end].end.load == load && moves(end)) {
             Some(after) => {
                 first += 1 + after;
                 cycles.push([last_states[begin], last_states[corners[first]]]);
@@ -496,6 +498,9 @@ mod tests {
         assert_eq!(of("force = 3; force = 1; force = 3; force = 1"), [[1, 5]]);
         assert_eq!(of("force = 3; force = 1; force = 2; force = 1"), [[3, 7]]);
         assert_eq!(tangential(&["[1, 0]", "[0, 1]", "[-1, 0]", "[0, -1]", "[1, 0]"]), [[3, 11]]);
+        // A load that is held is no cycle, and one that returns after it is.
+        assert_eq!(of("force = 3; force = 3; force = 3"), [[0; 2]; 0]);
+        assert_eq!(of("force = 3; force = 3; force = 1; force = 3"), [[1, 7]]);
         // No corner, or no path.
         assert_eq!(of("force = 1; force = 2; force = 3"), [[0; 2]; 0]);
         assert_eq!(cycles(&[]), [[0; 2]; 0]);

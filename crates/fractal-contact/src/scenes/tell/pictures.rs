@@ -1,6 +1,6 @@
 //! Curves drawn from the states.
 
-use crate::scenes::read::{LoadRequest, PrescribedLoad, SceneFile, depends_on_path, words};
+use crate::scenes::read::{LoadRequest, PrescribedLoad, SceneFile, cycles, depends_on_path, words};
 use crate::scenes::run::{StateRecord, Warning, rests_on_few_cells};
 use crate::scenes::tell::{Mean, StateTable, columns, ensemble, smooth_ball};
 use contact_model::quantities::StateQuantity;
@@ -76,7 +76,7 @@ pub(crate) fn curve_files(scene: &SceneFile) -> Vec<String> {
 }
 
 /// The pairs of quantities that are drawn: each quantity over the load, over the time, or over the quantity
-/// of a loop.
+/// of a loop. Of a history over time with cycles the force is drawn over the distance.
 fn pairs(scene: &SceneFile) -> Vec<(HorizontalAxis, &'static StateQuantity)> {
     let drawn = || columns::asked(scene).filter(|quantity| quantity.drawn);
     let named = |name: &str| columns::asked(scene).find(|quantity| quantity.name == name);
@@ -97,16 +97,22 @@ fn pairs(scene: &SceneFile) -> Vec<(HorizontalAxis, &'static StateQuantity)> {
             PrescribedLoad::MeanGap => over("mean_gap"),
         };
     }
+    let distance = if scene.effects.boundary == Boundary::Periodic { "mean_gap" } else { "approach" };
+    let force_loop =
+        named(distance).zip(named("force")).map(|(d, force)| (HorizontalAxis::StateQuantity(d), force));
     if depends_on_path(&scene.effects) {
         // The loop of the force, and everything else over the force.
-        let distance = if scene.effects.boundary == Boundary::Periodic { "mean_gap" } else { "approach" };
         let rest = over("force").into_iter().filter(|(_, y)| y.name != distance);
-        let axis =
-            named(distance).zip(named("force")).map(|(d, force)| (HorizontalAxis::StateQuantity(d), force));
-        return axis.into_iter().chain(rest).collect();
+        return force_loop.into_iter().chain(rest).collect();
     }
     if scene.effects.friction == contact_model::Friction::Off {
-        return over("time");
+        let mut pairs = over("time");
+        // Of cycles the loop of the force says more than the force over time.
+        if let Some(force_loop) = force_loop.filter(|_| !cycles(scene.request.pieces()).is_empty()) {
+            pairs.retain(|(_, y)| y.name != "force");
+            pairs.insert(0, force_loop);
+        }
+        return pairs;
     }
     over(if scene.request.shears() == [false, true] {
         "tangential_displacement_y"
