@@ -27,6 +27,7 @@ scene rough-friction curve-tangential_force.svg
 scene fretting-loop curve-tangential_force.svg traction-bem3d-0-006.png slip-bem3d-0-003.png stick_slip-bem3d-0-003.png
 scene rough-creep curve-approach.svg
 scene rubber-cycles curve-force.svg
+scene sealing-land pressure-bem3d-0-002.png
 scene rough-plastic plastic_depth-bem3d-0-002.png
 scene plastic-path curve-force.svg
 scene sticky-ball curve-force.svg

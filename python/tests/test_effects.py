@@ -824,3 +824,48 @@ def test_an_ensemble_refuses_decreasing_loads_with_a_hardness():
     with pytest.raises(fc.DomainError, match=FOLLOWS):
         fc.ensemble(fc.Bem3d(cells=17), hard, seed=1, surfaces=2, force_bar=[0.2, 0.1])
     assert len(fc.ensemble(fc.Bem3d(cells=17), hard, seed=1, surfaces=2, force_bar=[0.1, 0.2])) == 2
+
+
+# Time, and contacts along a line
+
+
+RUBBER = {"kind": "prony", "weights": [1.5, 0.5], "times": [0.5, 5.0]}
+
+
+def test_a_viscoelastic_body_is_followed_in_time():
+    scene = fc.Scene(SPHERE, contact_modulus=1.0, effects={"rheology": RUBBER}, outputs=["area"])
+    contact = fc.Bem3d(cells=48, time_tolerance=1e-3).prepare(scene)
+    first, crept, unloaded, recovered = contact.follow(time=[0.0, 4.0, 4.0, 400.0], force=[0.01, 0.01, 0.0, 0.0])
+    assert first.time_steps == 0 and crept.time_steps > 0
+    assert crept.approach > first.approach and crept.area > first.area
+    assert 0 < crept.approach_time_error < 1e-2 and crept.force_time_error == 0
+    assert crept.work > first.work > unloaded.work - crept.work and unloaded.area == recovered.area == 0
+    # In no time it is the glassy body.
+    glassy = fc.Bem3d(cells=48).prepare(fc.Scene(SPHERE, contact_modulus=3.0)).solve(force=0.01)
+    assert first.approach == pytest.approx(glassy.approach, rel=1e-6)
+    with pytest.raises(fc.Unsupported, match="stiffness of a viscoelastic body"):
+        fc.Bem3d().prepare(fc.Scene(SPHERE, contact_modulus=1.0, effects={"rheology": RUBBER}, outputs=["stiffness"]))
+    with pytest.raises(fc.DomainError, match="time_tolerance"):
+        fc.Bem3d(time_tolerance=2.0).prepare(scene)
+
+
+def test_a_map_may_be_periodic_along_one_axis():
+    y = (np.arange(64) + 0.5) / 64 - 0.5
+    heights = np.repeat(-0.5 * y[:, None] ** 2, 16, axis=1)
+    line = {"x": "periodic", "y": "free"}
+    scene = fc.Scene(fc.HeightMap(heights, size=(0.25, 1.0)), contact_modulus=1.0, outputs=["area"], effects={"boundary": line})
+    state = fc.Bem3d().prepare(scene).solve(force=1e-3)
+    # Hertz's half-width under a force for each length.
+    half_width = np.sqrt(4 * 1e-3 / 0.25 / np.pi)
+    assert state.area == pytest.approx(2 * half_width * 0.25, rel=0.02)
+    assert state.approach is None and state.stiffness is None
+    with pytest.raises(fc.Error, match="no zero at infinity"):
+        fc.Bem3d().prepare(scene).solve(approach=1e-3)
+    with pytest.raises(fc.Error, match="periodc"):
+        fc.Effects(boundary={"x": "periodc", "y": "free"})
+
+
+def test_the_periodic_kernel_of_waves_differs_by_a_per_cent():
+    scene = fc.Scene(smooth(), contact_modulus=1.0, effects={"boundary": "periodic"}, outputs=["area"])
+    cells, waves = (fc.Bem3d(periodic_kernel=kernel).prepare(scene).solve(force=5e-3).area for kernel in ["cells", "waves"])
+    assert waves == pytest.approx(cells, rel=0.03) and waves != cells

@@ -214,7 +214,7 @@ const drawEffects = () => {
     const key = { ...effect, table: "effects", default: effect.off, insteadOf: [] };
     const line = row([key], within);
     const can = effect.name === "boundary" || of.effects.includes(effect.name);
-    const options = line.querySelectorAll("option[value=periodic]");
+    const options = [...line.querySelectorAll("option")].filter((option) => option.value.includes("periodic"));
     if (effect.name === "boundary" && !of.periodic) options.forEach((option) => option.remove());
     if (!can) {
       line.querySelector("input,select").disabled = true;

@@ -40,6 +40,14 @@
 //! `k = -dF/d(mean gap)`. Full contact has no finite stiffness, so that it is `None` there. Every number of
 //! cells is solved on its own period.
 //!
+//! ## Periodic along one axis
+//!
+//! With [`contact_model::Boundary::PeriodicAlongX`] or its companion along y the rectangle repeats itself along one
+//! axis, and beyond its other edges the half-space is unloaded: a contact that goes on along a line. Waves that vary
+//! along the line have the periodic kernel with copies across that are so far away that they are not felt, and the
+//! mean along the line has the logarithm of a half-plane. As for profiles, states have neither approach nor
+//! stiffness. Adhesion, friction and layers are refused.
+//!
 //! ## Profiles
 //!
 //! A [`Surface::Profile`] is a body that is uniform along y, in plane strain. It is a map of one row, and a
@@ -214,6 +222,7 @@
 //! | `kernel::half_space` | Love's coefficients as a kernel | `kernel::love` |
 //! | `kernel::half_plane` | strips on a half-plane, for profiles with free boundaries; displacements are counted from twice the side, so that every entry is positive | differences of long rows of Love's squares; quadrature |
 //! | `kernel::periodic`, `period`, `waves` | the kernel of a rectangle that repeats itself, from its symbol; a constant on top of the zero mean makes every entry positive | sums of Love's kernel over images |
+//! | `kernel::along_a_line` | the kernel of a map that repeats itself along one axis: periodic waves with copies far away across, and the half-plane of their mean | sums of Love's kernel over images |
 //! | `kernel::tangential`, `cerruti` | Cerruti's solution on rectangular cells for two bodies, free and periodic | quadrature of point forces; sums over images |
 //! | `kernel::coupling` | the coupling of normal and tangential displacements | quadrature of point forces; sums over images |
 //! | `kernel::tensor` | how the entries of a kernel act on one, two or three components | sums over pairs |

@@ -218,8 +218,7 @@ impl Abilities {
         let mut lacks = Vec::new();
         let boundary = scene.effects.boundary;
         if !self.boundaries.contains(&boundary) {
-            let words = if boundary == Boundary::Free { "free boundaries" } else { "periodic boundaries" };
-            lacks.push(words.to_owned());
+            lacks.push(boundary.words().to_owned());
         }
         for effect in scene.effects.named().filter(|effect| !self.effects.contains(effect)) {
             lacks.push(effect.words().to_owned());

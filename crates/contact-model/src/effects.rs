@@ -300,6 +300,36 @@ pub enum Boundary {
     Free,
     /// Periodic copies of the rectangle.
     Periodic,
+    /// Copies along x alone, and an unloaded half-space beyond the edges along y: a contact that goes on along a line.
+    PeriodicAlongX,
+    /// Copies along y alone, and an unloaded half-space beyond the edges along x.
+    PeriodicAlongY,
+}
+
+impl Boundary {
+    /// All of them.
+    pub const ALL: &'static [Self] =
+        &[Self::Free, Self::Periodic, Self::PeriodicAlongX, Self::PeriodicAlongY];
+
+    /// Whether the map repeats itself along x, and along y.
+    pub fn repeats(self) -> [bool; 2] {
+        match self {
+            Self::Free => [false, false],
+            Self::Periodic => [true, true],
+            Self::PeriodicAlongX => [true, false],
+            Self::PeriodicAlongY => [false, true],
+        }
+    }
+
+    /// Its name in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Free => "free boundaries",
+            Self::Periodic => "periodic boundaries",
+            Self::PeriodicAlongX => "boundaries that are periodic along x alone",
+            Self::PeriodicAlongY => "boundaries that are periodic along y alone",
+        }
+    }
 }
 
 /// Largest pressure that the bodies carry: where it is reached, the softer one is indented without a further

@@ -285,8 +285,9 @@ pub struct PressArguments {
     #[arg(long = "modulus", value_name = "MODULUS", hide = true, conflicts_with_all = ["bodies", "contact_modulus"])]
     former_modulus: Option<String>,
     /// Boundary of the map. With a free boundary nothing outside the map carries load. With a periodic
-    /// boundary the map is one tile of an endless surface.
-    #[arg(long, default_value = "free", value_parser = ["free", "periodic"])]
+    /// boundary the map is one tile of an endless surface. Periodic along x or along y alone, it goes on along a line,
+    /// and nothing outside of its other edges carries load.
+    #[arg(long, default_value = "free", value_parser = ["free", "periodic", "periodic-along-x", "periodic-along-y"])]
     pub boundary: String,
     /// Hardness of the softer body, such as "2 GPa". The contact flows where the pressure reaches it.
     #[arg(long, value_name = "PRESSURE")]

@@ -211,11 +211,12 @@ pub fn abilities(model: &dyn ContactModel) -> Vec<(&'static str, Vec<&'static st
             abilities
                 .boundaries
                 .iter()
-                .map(
-                    |boundary| {
-                        if *boundary == contact_model::Boundary::Periodic { "periodic" } else { "free" }
-                    },
-                )
+                .map(|boundary| match boundary.repeats() {
+                    [false, false] => "free",
+                    [true, true] => "periodic",
+                    [true, false] => "periodic along x",
+                    [false, true] => "periodic along y",
+                })
                 .collect(),
         ),
         ("effects", abilities.effects.iter().map(|effect: &Effect| effect.words()).collect()),

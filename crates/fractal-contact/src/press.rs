@@ -283,7 +283,12 @@ fn question(asked: &PressArguments, at: &Path, profile: bool) -> Result<Question
         set("scene.body.kind", "sphere")?;
         set("scene.body.radius", radius).map_err(|mistake| mistake.of_flag("scene.body.radius", "--ball"))?;
     }
-    set("effects.boundary", &asked.boundary)?;
+    let boundary = match &*asked.boundary {
+        "periodic-along-x" => "{ x = \"periodic\", y = \"free\" }",
+        "periodic-along-y" => "{ x = \"free\", y = \"periodic\" }",
+        both => both,
+    };
+    set("effects.boundary", boundary)?;
     if let Some(hardness) = &asked.hardness {
         set("effects.hardness", hardness)?;
     }

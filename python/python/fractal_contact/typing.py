@@ -17,6 +17,7 @@ __all__ = [
     "Axis",
     "BodyDict",
     "Boundary",
+    "BoundaryDict",
     "ConductanceDict",
     "CropDict",
     "Detrend",
@@ -68,7 +69,16 @@ Undefined = Literal["error", "no_contact"]
 Direction = Literal["radial", "x", "y"]
 Axis = Literal["x", "y"]
 Waves = Literal["waves", "rings"]
-Boundary = Literal["free", "periodic"]
+
+
+class BoundaryDict(TypedDict):
+    """A boundary for each direction: `Effects.boundary`."""
+
+    x: Literal["free", "periodic"]
+    y: Literal["free", "periodic"]
+
+
+Boundary = Literal["free", "periodic"] | BoundaryDict
 Detrend = Literal["none", "mean", "plane", "quadric", "sphere", "cylinder"]
 
 

@@ -77,7 +77,7 @@ fn smallest_eigenvalue(stretch: f64) -> f64 {
 }
 
 /// The mean of `ln|x + t|` over `-1/2 < t < 1/2`.
-fn mean_logarithm(lag: usize) -> f64 {
+pub(super) fn mean_logarithm(lag: usize) -> f64 {
     let x = lag as f64;
     if lag > FAR {
         // <t^2> = 1/12, <t^4> = 1/80.

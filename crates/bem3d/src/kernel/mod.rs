@@ -4,6 +4,7 @@
 //! kernels are listed. [`KernelTable`] keeps its coefficients and the symbols made from it for all surfaces of a
 //! grid.
 
+mod along_a_line;
 mod alternating;
 mod cerruti;
 mod coupling;

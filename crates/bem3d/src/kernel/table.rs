@@ -1,5 +1,6 @@
 //! The kernels, and for each grid a table of one with its symbols, shared by all surfaces of that grid.
 
+use super::along_a_line::AlongALine;
 use super::coupling::CouplingKernel;
 use super::definition::{Coefficients, Kernel};
 use super::half_plane::HalfPlane;
@@ -26,13 +27,19 @@ pub enum Medium {
     Periodic(PeriodicKernel),
     /// A half-plane in plane strain, unloaded outside the line: one row of strips.
     HalfPlane,
+    /// A half-space with copies of the map along one axis alone.
+    AlongALine(Boundary),
     /// A layer on a base, with this boundary of the map.
     Layer(LayerOnGrid, Boundary, PeriodicKernel),
 }
 
 impl From<Boundary> for Medium {
     fn from(boundary: Boundary) -> Self {
-        if boundary == Boundary::Periodic { Self::Periodic(PeriodicKernel::Cells) } else { Self::HalfSpace }
+        match boundary.repeats() {
+            [false, false] => Self::HalfSpace,
+            [true, true] => Self::Periodic(PeriodicKernel::Cells),
+            _ => Self::AlongALine(boundary),
+        }
     }
 }
 
@@ -64,6 +71,7 @@ impl NormalTable {
             Medium::HalfSpace => Self::of(HalfSpace { grid }),
             Medium::Periodic(exact_for) => Self::of(PeriodicHalfSpace { grid, exact_for }),
             Medium::HalfPlane => Self::of(HalfPlane { grid }),
+            Medium::AlongALine(boundary) => Self::of(AlongALine { grid, boundary }),
             Medium::Layer(layer, boundary, exact_for) => {
                 Self::of(LayeredBody { grid, boundary, layer, exact_for })
             }
@@ -467,6 +475,9 @@ mod tests {
             (Medium::HalfSpace, oblong),
             (Medium::Periodic(PeriodicKernel::Cells), plane),
             (Medium::Periodic(PeriodicKernel::Cells), oblong),
+            (Medium::AlongALine(Boundary::PeriodicAlongX), plane),
+            (Medium::AlongALine(Boundary::PeriodicAlongX), oblong),
+            (Medium::AlongALine(Boundary::PeriodicAlongY), oblong),
             (Medium::Periodic(PeriodicKernel::Waves), plane),
             (Medium::Periodic(PeriodicKernel::Waves), oblong),
         ] {

@@ -75,14 +75,17 @@ impl PreparedSurface {
                 ScaledNormal::MeanGap(held("mean gap", gap, units.approach_in(gap))?)
             }
             NormalLoad::Approach(_) if !self.is_periodic() => {
-                let what = "an approach of a profile with free boundaries: displacements of a half-plane have no zero at infinity; give a force or a pressure";
+                let what = "an approach of a contact that goes on along a line: its displacements have no zero at infinity; give a force or a pressure";
                 return Err(Error::unsupported(NAME, what));
             }
             NormalLoad::Approach(_) => {
                 let what = "an approach: a periodic contact has a mean gap in its place";
                 return Err(Error::unsupported(NAME, what));
             }
-            other => return Err(Error::unsupported(NAME, format!("{other} with free boundaries"))),
+            other => {
+                let boundary = self.problem.operators.table().boundary();
+                return Err(Error::unsupported(NAME, format!("{other} with {}", boundary.words())));
+            }
         })
     }
 

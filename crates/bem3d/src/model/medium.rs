@@ -2,7 +2,7 @@
 
 use super::options::NAME;
 use crate::kernel::{LayerOnGrid, LayerSymbol, Medium, PeriodicKernel};
-use contact_model::{Boundary, Conductance, Error, Friction, Result, Scene, Surface};
+use contact_model::{Adhesion, Boundary, Conductance, Error, Friction, Result, Scene, Surface};
 
 /// The body under a scene's surface: under a profile with free boundaries a half-plane. With periodic ones
 /// the kernel of one row is that of plane strain by itself, because a pressure that is periodic with one row
@@ -29,12 +29,48 @@ pub(super) fn check_kernel(scene: &Scene, exact_for: PeriodicKernel) -> Result<(
     if exact_for == PeriodicKernel::Cells {
         return Ok(());
     }
-    if scene.effects.boundary == Boundary::Free {
-        return Err(Error::unsupported(NAME, "a periodic kernel of waves with free boundaries"));
+    if scene.effects.boundary != Boundary::Periodic {
+        let what = format!("a periodic kernel of waves with {}", scene.effects.boundary.words());
+        return Err(Error::unsupported(NAME, what));
     }
     if scene.effects.friction != Friction::Off {
         let what = "a periodic kernel of waves with friction, whose tangential kernel is one of cells";
         return Err(Error::unsupported(NAME, what));
+    }
+    Ok(())
+}
+
+/// Refuses what a contact that goes on along a line does not have.
+///
+/// # Errors
+/// [`Error::Unsupported`] for profiles, adhesion, friction, a layer, a displacement and a conductance of a map that is
+/// periodic along one axis.
+pub(super) fn check_line(scene: &Scene) -> Result<()> {
+    let [along_x, along_y] = scene.effects.boundary.repeats();
+    if along_x == along_y {
+        return Ok(());
+    }
+    let refused =
+        |what: &str| Err(Error::unsupported(NAME, format!("{what} with {}", scene.effects.boundary.words())));
+    if matches!(scene.surface, Surface::Profile(_)) {
+        return refused("a profile, which is uniform along y already,");
+    }
+    if scene.effects.adhesion != Adhesion::Off {
+        return refused("adhesion, whose neighbours of a cell are those of other boundaries,");
+    }
+    if scene.effects.friction != Friction::Off {
+        return refused("friction, whose tangential kernels are those of other boundaries,");
+    }
+    if scene.effects.layer.is_some() {
+        return refused("a layer, whose kernel is one of other boundaries,");
+    }
+    if scene.outputs.displacement {
+        return refused("a displacement, which has no zero at infinity,");
+    }
+    if scene.outputs.conductance != Conductance::Off {
+        return refused(
+            "a conductance, which follows from a stiffness that depends on the place of the zero,",
+        );
     }
     Ok(())
 }

@@ -102,7 +102,7 @@ impl ContactModel for Bem3d {
         ];
         Abilities {
             surfaces: SURFACES,
-            boundaries: &[Boundary::Free, Boundary::Periodic],
+            boundaries: Boundary::ALL,
             effects: &[
                 Effect::Hardness,
                 Effect::ShortRangeAdhesion,
@@ -163,6 +163,7 @@ impl Bem3d {
     ) -> Result<PreparedBem3d> {
         self.abilities().refuse(NAME, scene)?;
         profile::check(scene)?;
+        medium::check_line(scene)?;
         medium::check_layer(scene)?;
         medium::check_kernel(scene, self.periodic_kernel)?;
         viscous::check_rheology(scene)?;

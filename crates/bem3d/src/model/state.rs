@@ -341,10 +341,11 @@ impl PreparedSurface {
     pub(super) fn resolution_of(&self, contact: &CellSet, pressure: &[f64]) -> Result<ContactResolution> {
         let grid = self.problem.grid();
         let largest = pressure.iter().copied().fold(0.0, f64::max);
+        let [along_x, along_y] = self.problem.operators.table().boundary().repeats();
         // A profile goes on along y.
-        let across = |y: usize| !self.is_profile && (y == 0 || y + 1 == grid.rows);
-        let at_edge = |&(x, y): &(usize, usize)| x == 0 || x + 1 == grid.columns || across(y);
-        let edge_cells = if self.is_periodic() { 0 } else { contact.places().filter(at_edge).count() };
+        let across = |y: usize| !self.is_profile && !along_y && (y == 0 || y + 1 == grid.rows);
+        let along = |x: usize| !along_x && (x == 0 || x + 1 == grid.columns);
+        let edge_cells = contact.places().filter(|&(x, y)| along(x) || across(y)).count();
         let sum: f64 = pressure.iter().filter(|p| **p > 0.0).sum();
         let largest_share = if sum > 0.0 { largest / sum } else { 0.0 };
         let largest = self.nondimensional.pressure(PI * largest)?;
@@ -355,15 +356,16 @@ impl PreparedSurface {
     fn rim_cells(&self, contact: &CellSet) -> usize {
         let Grid { columns, rows, .. } = self.problem.grid();
         let z = self.problem.candidates.z();
-        let periodic = self.is_periodic();
+        let [along_x, along_y] = self.problem.operators.table().boundary().repeats();
         let is_undefined = |x: usize, y: usize| z[y * columns + x].is_infinite();
-        let beside = |at: usize, count: usize| {
-            let before = if at > 0 { Some(at - 1) } else { periodic.then(|| count - 1) };
-            let after = if at + 1 < count { Some(at + 1) } else { periodic.then_some(0) };
+        let beside = |at: usize, count: usize, repeats: bool| {
+            let before = if at > 0 { Some(at - 1) } else { repeats.then(|| count - 1) };
+            let after = if at + 1 < count { Some(at + 1) } else { repeats.then_some(0) };
             before.into_iter().chain(after)
         };
         let at_rim = |&(x, y): &(usize, usize)| {
-            beside(x, columns).any(|x| is_undefined(x, y)) || beside(y, rows).any(|y| is_undefined(x, y))
+            beside(x, columns, along_x).any(|x| is_undefined(x, y))
+                || beside(y, rows, along_y).any(|y| is_undefined(x, y))
         };
         contact.places().filter(at_rim).count()
     }

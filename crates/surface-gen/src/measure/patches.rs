@@ -6,7 +6,7 @@ use contact_model::{Boundary, Cells};
 /// connected when they share an edge.
 ///
 /// `index` holds strictly increasing linear indices `iy * columns + ix` on a grid of `cells` (one number for
-/// equal columns and rows, or `[columns, rows]`). With periodic boundaries opposite edges of the grid are
+/// equal columns and rows, or `[columns, rows]`). Where the boundary is periodic, opposite edges of the grid are
 /// joined. Cost: O(n log n) at worst, O(n) in practice, for n cells of the set; it does not depend on the
 /// size of the grid.
 ///
@@ -67,11 +67,14 @@ fn neighbours(cells: Cells, index: &[u32], boundary: Boundary, mut pair: impl Fn
             }
         }
     }
-    if boundary == Boundary::Periodic {
+    let [along_x, along_y] = boundary.repeats();
+    if along_x || along_y {
         let find = |x: usize, y: usize| index.binary_search(&((y * columns + x) as u32)).ok();
         for k in 0..index.len() {
             let (x, y) = place(k);
-            for other in [(x == 0).then(|| find(columns - 1, y)), (y == 0).then(|| find(x, rows - 1))] {
+            let over_x = (along_x && x == 0).then(|| find(columns - 1, y));
+            let over_y = (along_y && y == 0).then(|| find(x, rows - 1));
+            for other in [over_x, over_y] {
                 if let Some(other) = other.flatten() {
                     pair(k, other);
                 }
@@ -122,9 +125,10 @@ mod tests {
                 let (x, y) = (i % columns, i / columns);
                 for (dx, dy) in [(1, 0), (columns - 1, 0), (0, 1), (0, rows - 1)] {
                     let (to_x, to_y) = ((x + dx) % columns, (y + dy) % rows);
-                    let wraps = to_x.abs_diff(x) > 1 || to_y.abs_diff(y) > 1;
+                    let wraps = [to_x.abs_diff(x) > 1, to_y.abs_diff(y) > 1];
+                    let leaves = (0..2).any(|i| wraps[i] && !boundary.repeats()[i]);
                     let j = to_y * columns + to_x;
-                    if set[j] && !seen[j] && !(wraps && boundary == Boundary::Free) {
+                    if set[j] && !seen[j] && !leaves {
                         seen[j] = true;
                         stack.push(j);
                     }
@@ -163,7 +167,7 @@ mod tests {
             let set: Vec<bool> = set.into_iter().map(|u| u < density).collect();
             let index = index(&set);
             for cells in [[9, 9], [27, 3], [3, 27], [81, 1], [1, 81]] {
-                for boundary in [Boundary::Free, Boundary::Periodic] {
+                for &boundary in Boundary::ALL {
                     let found = patches(cells, &index, boundary);
                     prop_assert_eq!(found.iter().sum::<usize>(), index.len());
                     prop_assert_eq!(&found, &flooded(cells, &set, boundary));

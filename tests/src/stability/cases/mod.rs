@@ -6,6 +6,7 @@ mod few;
 mod friction;
 mod friction_paths;
 mod hardness;
+mod kernels;
 mod limits;
 mod periodic;
 mod range;
@@ -39,6 +40,7 @@ pub fn cases() -> Vec<HardCase> {
         &short_range::CASES,
         &friction::CASES,
         &friction_paths::CASES,
+        &kernels::CASES,
         &chance::CASES,
     ]
     .concat()

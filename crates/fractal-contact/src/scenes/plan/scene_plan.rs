@@ -249,6 +249,8 @@ impl Plan {
         let models: Vec<String> = self.models.iter().map(of_model).collect();
         let boundary = match self.boundary {
             Boundary::Periodic => "periodic boundary",
+            Boundary::PeriodicAlongX => "boundary periodic along x",
+            Boundary::PeriodicAlongY => "boundary periodic along y",
             _ => "free boundary",
         };
         let states = if self.states == 1 { "1 state".to_owned() } else { format!("{} states", self.states) };

@@ -30,18 +30,23 @@ pub struct EffectKey {
 pub static EFFECT_KEYS: &[EffectKey] = &[
     EffectKey {
         name: "boundary",
-        takes: "`\"free\"` or `\"periodic\"`",
+        takes: "`\"free\"`, `\"periodic\"`, `{ x = \"periodic\", y = \"free\" }` or `{ x = \"free\", y = \"periodic\" }`",
         about: "What lies outside of the rectangle.",
         off: "an unloaded half-space outside the rectangle",
-        read: |entry, _, effects| {
-            let words = [("free", Boundary::Free), ("periodic", Boundary::Periodic)];
-            entry.choice(&words).map(|boundary| effects.boundary = boundary)
-        },
+        read: |entry, _, effects| read_boundary(entry).map(|boundary| effects.boundary = boundary),
         print: |effects, _| {
-            Some(printed::text(if effects.boundary == Boundary::Periodic { "periodic" } else { "free" }))
+            let words = effects.boundary.repeats().map(|repeats| if repeats { "periodic" } else { "free" });
+            let [x, y] = words.map(printed::text);
+            Some(if x == y { x } else { format!("{{ x = {x}, y = {y} }}") })
         },
         words: |effects, _| {
-            (effects.boundary == Boundary::Periodic).then(|| "periodic copies of the rectangle".into())
+            let copies = match effects.boundary.repeats() {
+                [false, false] => return None,
+                [true, true] => "periodic copies of the rectangle",
+                [true, false] => "periodic copies of the rectangle along x",
+                [false, true] => "periodic copies of the rectangle along y",
+            };
+            Some(copies.into())
         },
     },
     EffectKey {
@@ -331,6 +336,24 @@ fn print_rheology(rheology: &Rheology, system: System) -> Option<String> {
             format!("{{ kind = \"prony\", weights = {}, times = {} }}", list(weights), list(times))
         }
         _ => return None,
+    })
+}
+
+/// What lies outside of the rectangle, in both directions or in each.
+fn read_boundary(entry: &Entry<'_>) -> ReadResult<Boundary> {
+    let words = [("free", false), ("periodic", true)];
+    if !entry.is_table() {
+        return entry.choice(&words).map(|repeats| if repeats { Boundary::Periodic } else { Boundary::Free });
+    }
+    let table = entry.table()?;
+    let x = table.require("x", "\"periodic\"")?.choice(&words)?;
+    let y = table.require("y", "\"free\"")?.choice(&words)?;
+    table.finish()?;
+    Ok(match (x, y) {
+        (false, false) => Boundary::Free,
+        (true, true) => Boundary::Periodic,
+        (true, false) => Boundary::PeriodicAlongX,
+        (false, true) => Boundary::PeriodicAlongY,
     })
 }
 

@@ -500,7 +500,7 @@ mod tests {
         assert_eq!(tangential(&["[1, 0]", "[0, 1]", "[-1, 0]", "[0, -1]", "[1, 0]"]), [[3, 11]]);
         // A load that is held is no cycle, and one that returns after it is.
         assert_eq!(of("force = 3; force = 3; force = 3"), [[0; 2]; 0]);
-        assert_eq!(of("force = 3; force = 3; force = 1; force = 3"), [[1, 7]]);
+        assert_eq!(of("force = 3; force = 3; force = 1; force = 3"), [[3, 7]]);
         // No corner, or no path.
         assert_eq!(of("force = 1; force = 2; force = 3"), [[0; 2]; 0]);
         assert_eq!(cycles(&[]), [[0; 2]; 0]);

@@ -616,14 +616,24 @@ fn check_request(scene: &SceneFile, places: &Places) -> ReadResult<()> {
     }
 }
 
-/// Checks that nothing is requested of a profile with free boundaries that depends on the zero of the
-/// displacements of a half-plane.
+/// Checks that nothing is requested of a contact that goes on along a line, of a profile with free boundaries or of a
+/// map that is periodic along one direction, that depends on the zero of the displacements.
 fn check_half_plane(scene: &SceneFile, places: &Places) -> ReadResult<()> {
     let SceneFile { request, surface, effects, requested, .. } = scene;
-    if !surface.is_profile() || effects.boundary == Boundary::Periodic {
+    let is_line = match effects.boundary.repeats() {
+        [true, true] => false,
+        [false, false] => surface.is_profile(),
+        _ => true,
+    };
+    if !is_line {
         return Ok(());
     }
-    let why = "displacements under a body uniform along y have no zero at infinity";
+    let what = if surface.is_profile() {
+        "a profile with free boundaries"
+    } else {
+        "a map that is periodic along one direction"
+    };
+    let why = "displacements under a contact that goes on along a line have no zero at infinity";
     let help = "prescribe `force` or `mean_pressure` and ask for area, pressure or gap; or add `boundary = \"periodic\"` to [effects], where a mean \
                 gap and its stiffness have a meaning";
     let by_approach = match request {
@@ -633,7 +643,7 @@ fn check_half_plane(scene: &SceneFile, places: &Places) -> ReadResult<()> {
         }
     };
     if by_approach {
-        let message = format!("an approach of a profile with free boundaries: {why}");
+        let message = format!("an approach of {what}: {why}");
         return Err(places.at_key(&request_key(request), message).with_help(help));
     }
     let outputs = &requested.outputs;
@@ -643,7 +653,7 @@ fn check_half_plane(scene: &SceneFile, places: &Places) -> ReadResult<()> {
         ("displacement", outputs.displacement),
     ];
     let Some((name, _)) = asked.iter().find(|(_, asked)| *asked) else { return Ok(()) };
-    let message = format!("{name} of a profile with free boundaries: {why}");
+    let message = format!("{name} of {what}: {why}");
     Err(places.at_key(&format!("outputs.{name}"), message).with_help(help))
 }
 

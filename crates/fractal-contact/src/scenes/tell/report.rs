@@ -399,6 +399,12 @@ fn boundary(boundary: Boundary) -> &'static str {
         Boundary::Periodic => {
             "The boundary is periodic: the surface is one tile of an endless surface, and its copies carry load too."
         }
+        Boundary::PeriodicAlongX => {
+            "The boundary is periodic along x: the surface goes on along a line. Beyond its edges along y nothing carries load."
+        }
+        Boundary::PeriodicAlongY => {
+            "The boundary is periodic along y: the surface goes on along a line. Beyond its edges along x nothing carries load."
+        }
         _ => {
             "The boundary is free: the surface is pressed by itself, and nothing outside of its rectangle carries load."
         }

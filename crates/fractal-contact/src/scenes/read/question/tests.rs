@@ -246,7 +246,7 @@ fn effects() -> BoxedStrategy<Effects> {
         poisson,
         base,
     }));
-    (select(vec![Boundary::Free, Boundary::Periodic]), hardness, adhesion, friction, rheology, layer)
+    (select(Boundary::ALL.to_vec()), hardness, adhesion, friction, rheology, layer)
         .prop_map(|(boundary, hardness, adhesion, friction, rheology, layer)| {
             let mut effects = Effects::default();
             (effects.boundary, effects.hardness, effects.adhesion) = (boundary, hardness, adhesion);
