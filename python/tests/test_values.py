@@ -473,3 +473,41 @@ thread.join()
     told = ran.stdout.splitlines()
     assert "forked" in told[0] and 'get_context("spawn")' in told[0], (ran.stdout, ran.stderr)
     assert told[1:] == ["0.1", "0"]
+
+
+@pytest.mark.parametrize(("thickness", "poisson"), [(0.1, 0.3), (0.02, 0.0), (1.5, 0.49)])
+def test_a_layer_on_a_rigid_base(thickness, poisson):
+    """ContactMechanics' half-space of a finite thickness under the same pressures: the same displacements of waves.
+
+    Its mean is the uniform compression of the layer, which the displacement here, measured from its mean, does not
+    contain.
+    """
+    ContactMechanics = pytest.importorskip("ContactMechanics")
+    cells, young, force = 64, 1.0, 0.02
+    random = np.random.default_rng(3)
+    waves = np.fft.fftfreq(cells) * cells
+    length = np.hypot(*np.meshgrid(waves, waves))
+    spectrum = np.where((length > 0) & (length < 12), np.maximum(length, 1) ** -1.8, 0)
+    heights = np.fft.ifft2(spectrum * np.exp(2j * np.pi * random.random((cells, cells)))).real
+    heights *= 0.02 / heights.std()
+    scene = fc.Scene(
+        fc.HeightMap(heights, size=1.0),
+        contact_modulus=young / (1 - poisson**2),
+        outputs=["pressure", "displacement", "area"],
+        effects={
+            "boundary": "periodic",
+            "layer": {"thickness": thickness, "young": young, "poisson": poisson, "base": "rigid"},
+        },
+    )
+    theirs = ContactMechanics.PeriodicFFTElasticHalfSpace(
+        (cells, cells), young, (1.0, 1.0), thickness=thickness, poisson=poisson
+    )
+    for kernel, bound in [("waves", 1e-8), ("cells", 0.03)]:
+        state = fc.Bem3d(tolerance=1e-8, periodic_kernel=kernel).prepare(scene).solve(force=force)
+        assert 0.05 < state.area < 0.9
+        displacement = theirs.evaluate_disp(-np.asarray(state.pressure).T / cells**2)
+        ours = np.asarray(state.displacement).T
+        difference = (displacement - displacement.mean()) - (ours - ours.mean())
+        assert np.abs(difference).max() < bound * np.abs(ours).max()
+        compression = thickness * (1 + poisson) * (1 - 2 * poisson) / (young * (1 - poisson))
+        assert abs(displacement.mean()) == pytest.approx(force * compression, rel=1e-6)

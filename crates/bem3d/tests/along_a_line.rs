@@ -211,8 +211,8 @@ fn effects_along_a_line() {
         elastic.contact_modulus = modulus;
         assert_relative_eq!(area, solved(&elastic, 2e-3).area.unwrap(), max_relative = 1e-12);
     }
-    type Change = fn(&mut Scene);
-    let refused: [(Change, &str); 5] = [
+    type ChangeOfLine = fn(&mut Scene);
+    let refused: [(ChangeOfLine, &str); 5] = [
         (|scene| scene.effects.adhesion = Adhesion::ShortRange { work: 1e-6 }, "adhesion"),
         (|scene| scene.outputs.displacement = true, "displacement"),
         (

@@ -400,3 +400,16 @@ fn the_work_of_a_jump_is_the_elastic_energy() {
     let left = states[2].viscoelastic.unwrap().work / states[1].viscoelastic.unwrap().work;
     assert!(left.abs() < 1e-6, "{left}");
 }
+
+/// An error below what the solver leaves is no reason to go on cutting steps.
+#[test]
+fn steps_end_where_the_solver_decides() {
+    let model = Bem3d { cells: 24, tolerance: 1e-4, time_tolerance: 1e-9, ..Bem3d::DEFAULT };
+    let mut contact = model.prepare(&scene(rough(), Boundary::Periodic, SOLID), 3).unwrap();
+    let steps: usize = [0.0, 1.0, 30.0]
+        .into_iter()
+        .map(|time| contact.advance(Step::new(time, Load::force(0.002))).unwrap())
+        .map(|state| state.viscoelastic.unwrap().time_steps)
+        .sum();
+    assert!(steps < 2000, "{steps}");
+}

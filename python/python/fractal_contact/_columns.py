@@ -142,6 +142,11 @@ class Columns:
         return self._column("plastic_work")
 
     @property
+    def work(self) -> NDArray[np.float64]:
+        """numpy.ndarray: work of the load in J for SI units, shape (states,); NaN where there is none."""
+        return self._column("work")
+
+    @property
     def branch(self) -> NDArray[np.str_]:
         """numpy.ndarray: branch, shape (states,); empty where there is none."""
         return self._words("branch")

@@ -465,6 +465,11 @@ class ContactState:
     def plastic_work(self) -> float | None:
         """float or None: plastic work, energy dissipated in the plastic indentation, hardness times volume [J]."""
     @property
+    def work(self) -> float | None:
+        """float or None: work of the load, work of the normal load since the first step: what the body holds and
+        what has been dissipated in it [J].
+        """
+    @property
     def branch(self) -> str | None:
         """str or None: branch, whether the bodies were brought nearer or drawn apart."""
     @property
@@ -550,6 +555,11 @@ class ContactState:
     def linear_solves(self) -> int:
         """int: linear solves, linear systems solved."""
     @property
+    def time_steps(self) -> float | None:
+        """float or None: steps of time, of a viscoelastic history that is solved cell by cell, since the state
+        before.
+        """
+    @property
     def fields(self) -> int:
         """int: fields over the grid that the state holds."""
     @property
@@ -573,6 +583,26 @@ class ContactState:
     def force_error(self) -> float | None:
         """float or None: bound of the relative error of the force under a prescribed approach or mean gap; an
         estimate with adhesion.
+        """
+    @property
+    def force_time_error(self) -> float | None:
+        """float or None: estimated relative error of the force by steps of time: its difference from that of the
+        same history in steps twice as long.
+        """
+    @property
+    def approach_time_error(self) -> float | None:
+        """float or None: estimated relative error of the approach by steps of time: its difference from that of the
+        same history in steps twice as long.
+        """
+    @property
+    def mean_gap_time_error(self) -> float | None:
+        """float or None: estimated relative error of the mean gap by steps of time: its difference from that of the
+        same history in steps twice as long.
+        """
+    @property
+    def area_time_error(self) -> float | None:
+        """float or None: estimated relative error of the area by steps of time: the difference of the number of
+        cells from that of the same history in steps twice as long.
         """
     @property
     def equilibrium(self) -> float | None:

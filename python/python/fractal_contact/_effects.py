@@ -21,7 +21,7 @@ class Effects:
     Parameters
     ----------
     boundary : optional
-        "free" or "periodic"
+        "free", "periodic", { x: "periodic", y: "free" } or { x: "free", y: "periodic" }
         What lies outside of the rectangle. Not named: an unloaded half-space outside the rectangle.
     hardness : optional
         { pressure }, or the pressure alone

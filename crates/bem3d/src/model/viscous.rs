@@ -26,7 +26,10 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// A step of time is cut to no less than this share of the piece of the path in which it lies.
-const SHORTEST_STEP: f64 = 1e-9;
+const SHORTEST_STEP: f64 = 1e-14;
+/// A step whose error is more than this multiple of that of the step of twice its length or more, which was cut, is
+/// as accurate as the solver is: shorter ones do not help.
+const NOISE: f64 = 0.7;
 /// The next step is this much shorter than the one whose error would be what is allowed.
 const CAUTION: f64 = 0.8;
 /// The next step over the last one, at least and at most.
@@ -207,10 +210,12 @@ pub(super) struct ViscousHistory {
 
 /// A step of time of one track.
 #[derive(Clone, Copy)]
-struct TimeStep {
+struct TimeStep<'a> {
     duration: f64,
     /// The load at its end.
     load: ScaledLoad,
+    /// A contact near that at its end, with true pressures; without one that of its beginning.
+    guess: Option<&'a LastState>,
 }
 
 /// Refuses what a viscoelastic contact does not have.
@@ -308,12 +313,13 @@ impl ViscousHistory {
         &self,
         surface: &mut PreparedSurface,
         track: &ViscousTrack,
-        law: &StepLaw,
+        (law, guess): (&StepLaw, Option<&LastState>),
         stop: Stop<'_>,
     ) -> Result<Vec<f64>> {
         self.rest(surface);
         surface.nondimensional = self.elastic.with_modulus_times(law.modulus)?;
-        surface.last = track.last.as_ref().map(|last| last.scaled(law.modulus.recip()));
+        let guess = guess.or(track.last.as_ref());
+        surface.last = guess.map(|last| last.scaled(law.modulus.recip()));
         if let Some(hardness) = self.hardness {
             surface.limit_pressure(Some(hardness / law.modulus));
             let mut memory = IndentationMemory::new(Arc::clone(&self.virgin.0));
@@ -364,7 +370,7 @@ impl ViscousHistory {
                             load a time";
                 return Err(Error::unsupported(NAME, what));
             }
-            let jump = TimeStep { duration: 0.0, load };
+            let jump = TimeStep { duration: 0.0, load, guess: None };
             if let Some(coarse) = &mut memory.coarse {
                 surface.outputs = hidden;
                 *coarse = self.step(surface, coarse, jump, &mut work, stop)?.1;
@@ -381,6 +387,8 @@ impl ViscousHistory {
         // The largest response that any attempt has shown: what errors are relative to.
         let mut scale = memory.largest;
         let (mut done, mut step) = (0.0, memory.step.unwrap_or(duration));
+        // The error of the step that was cut last.
+        let mut cut = f64::INFINITY;
         loop {
             let left = duration - done;
             // No short rest is left to the last step.
@@ -396,14 +404,17 @@ impl ViscousHistory {
             let end = if ends { 1.0 } else { end };
             surface.outputs = hidden;
             let coarse = memory.coarse.as_ref().unwrap_or(&memory.fine);
-            let whole = TimeStep { duration: now, load: at(end) };
+            let whole = TimeStep { duration: now, load: at(end), guess: None };
             let coarse = self.step(surface, coarse, whole, &mut work, stop)?.1;
-            let half = TimeStep { duration: 0.5 * now, load: at(middle) };
+            // Both histories are close to each other: the end of one is the guess of the other.
+            let between = memory.fine.last.as_ref().zip(coarse.last.as_ref());
+            let between = between.map(|(start, end)| start.halfway_to(end));
+            let half = TimeStep { duration: 0.5 * now, load: at(middle), guess: between.as_ref() };
             let (_, first) = self.step(surface, &memory.fine, half, &mut work, stop)?;
             if ends {
                 surface.outputs = wanted;
             }
-            let half = TimeStep { duration: 0.5 * now, load: at(end) };
+            let half = TimeStep { duration: 0.5 * now, load: at(end), guess: coarse.last.as_ref() };
             let (state, fine) = self.step(surface, &first, half, &mut work, stop)?;
             let next =
                 HistoryMemory { fine, coarse: Some(coarse), step: None, largest: scale, work: memory.work };
@@ -411,11 +422,14 @@ impl ViscousHistory {
             let added = (self.error(&next, load, scale) - self.error(&memory, load, scale)).abs();
             let ratio = (self.tolerance / added).powf(STEP_ORDER.recip()) * CAUTION;
             let better = now * ratio.clamp(STEP_CHANGE.0, STEP_CHANGE.1);
-            if added > self.tolerance && now > SHORTEST_STEP * duration {
-                work.rejected += 1;
-                step = better.min(0.5 * now);
+            let is_noise = added > NOISE * cut;
+            if added > self.tolerance && now > SHORTEST_STEP * duration && !is_noise {
+                (step, cut) = (better.min(0.5 * now), added);
                 continue;
             }
+            // Noise does not grow with the step.
+            let better = if is_noise { STEP_CHANGE.1 * now } else { better };
+            cut = f64::INFINITY;
             work.steps += 1;
             done += now;
             // A step that the end of the piece cut short says little about the longest possible one.
@@ -504,13 +518,13 @@ impl ViscousHistory {
         &self,
         surface: &mut PreparedSurface,
         track: &ViscousTrack,
-        step: TimeStep,
+        step: TimeStep<'_>,
         work: &mut StepWork,
         stop: Stop<'_>,
     ) -> Result<(ContactState, ViscousTrack)> {
         let law = (self.law)(&self.spectrum, step.duration);
         let modulus = law.modulus;
-        let left = self.begin_step(surface, track, &law, stop)?;
+        let left = self.begin_step(surface, track, (&law, step.guess), stop)?;
         let load = ScaledLoad { normal: step.load.normal.over(modulus), ..step.load };
         let state = surface.at(load, stop)?;
         work.add(&state);
@@ -561,7 +575,6 @@ impl ScaledNormal {
 #[derive(Debug, Clone, Copy, Default)]
 struct StepWork {
     steps: usize,
-    rejected: usize,
     iterations: usize,
     applications: usize,
     linear_solves: usize,
@@ -648,6 +661,18 @@ impl PreparedSurface {
 }
 
 impl LastState {
+    /// The mean of two contacts, at the larger of both approaches.
+    fn halfway_to(&self, other: &Self) -> Self {
+        let contact = self.contact.union(&other.contact);
+        let mut p = contact.carry(&self.contact, &self.p);
+        contact.add_carried(&other.contact, &other.p, &mut p);
+        for p in &mut p {
+            *p *= 0.5;
+        }
+        let (force, d) = (0.5 * (self.force + other.force), self.d.max(other.d));
+        Self { contact, p, d, force, tangent: None }
+    }
+
     /// The same contact of a body with another modulus.
     fn scaled(&self, factor: f64) -> Self {
         Self {

@@ -62,7 +62,7 @@ fn areas_of_another_program() {
             let mut track = ViscousTrack::new(&surface, &history.spectrum);
             let mut work = StepWork::default();
             for (step, cells) in cells_of_the_other(column).into_iter().enumerate() {
-                let time_step = TimeStep { duration: 1.0 / 6.0, load };
+                let time_step = TimeStep { duration: 1.0 / 6.0, load, guess: None };
                 track = history.step(&mut surface, &track, time_step, &mut work, &never).unwrap().1;
                 let found = track.reached.cells;
                 let allowed = match periodic_kernel {
@@ -114,7 +114,7 @@ fn work_is_stored_or_dissipated() {
             // Up, down and up.
             let d = 0.06 * (share.min(0.7 - 0.4 * share)).max(1.2 * share - 0.6);
             let load = surface.scaled_load(Load::approach(d)).unwrap();
-            let step = TimeStep { duration: 3.0 / f64::from(count), load };
+            let step = TimeStep { duration: 3.0 / f64::from(count), load, guess: None };
             let next = history.step(&mut surface, &track, step, &mut work, &never).unwrap().1;
             of_load += work_between(&mut surface, &track, &next, &mut work, &never).unwrap();
             let [stored, now_power] = energies(&surface, &history.spectrum, &next);
