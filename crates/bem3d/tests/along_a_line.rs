@@ -37,7 +37,7 @@ fn across(s: f64) -> f64 {
 #[test]
 fn a_uniform_map_is_a_profile() {
     let profile =
-        HeightMap::new([40, 1], [1.0, 0.3], (0..40).map(|i| across((i as f64 + 0.5) / 40.0)).collect());
+        HeightMap::new([40, 1], [1.0, 0.3], (0..40).map(|i| across((f64::from(i) + 0.5) / 40.0)).collect());
     let mut plane = scene(Surface::Profile(Arc::new(profile.unwrap())), Boundary::Free);
     plane.outputs.pressure = true;
     for force in [1e-4, 3e-3] {
@@ -193,6 +193,9 @@ fn contacts_wrap_along_the_line_alone() {
     assert!(beside.resolution.unwrap().edge_cells > 0);
 }
 
+/// A change of a scene.
+type ChangeOfLine = fn(&mut Scene);
+
 /// A hardness and a viscoelastic body need no other kernel; what does is refused.
 #[test]
 fn effects_along_a_line() {
@@ -211,7 +214,6 @@ fn effects_along_a_line() {
         elastic.contact_modulus = modulus;
         assert_relative_eq!(area, solved(&elastic, 2e-3).area.unwrap(), max_relative = 1e-12);
     }
-    type ChangeOfLine = fn(&mut Scene);
     let refused: [(ChangeOfLine, &str); 5] = [
         (|scene| scene.effects.adhesion = Adhesion::ShortRange { work: 1e-6 }, "adhesion"),
         (|scene| scene.outputs.displacement = true, "displacement"),

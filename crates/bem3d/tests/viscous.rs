@@ -11,9 +11,9 @@ const ARM: Relaxing = Relaxing { weight: 3.0, time: 2.0 };
 const SOLID: Rheology = Rheology::StandardSolid { arm: ARM };
 const MODEL: Bem3d = Bem3d { cells: 48, tolerance: 1e-8, ..Bem3d::DEFAULT };
 
-fn scene(surface: Surface, boundary: Boundary, rheology: Rheology) -> Scene {
+fn scene(surface: Surface, boundary: Boundary, rheology: &Rheology) -> Scene {
     let mut scene = Scene::new(surface, MODULUS);
-    scene.effects.rheology = rheology;
+    scene.effects.rheology = *rheology;
     scene.effects.boundary = boundary;
     scene.outputs = Outputs { area: true, mean_gap: boundary == Boundary::Periodic, ..Outputs::default() };
     scene
@@ -36,8 +36,8 @@ fn history(model: &Bem3d, scene: &Scene, steps: &[(f64, Load)]) -> Vec<ContactSt
 }
 
 /// A force applied at once and held: the creep function of the material over E*.
-fn creep(rheology: Rheology, time: f64) -> f64 {
-    match rheology {
+fn creep(rheology: &Rheology, time: f64) -> f64 {
+    match *rheology {
         Rheology::StandardSolid { arm: Relaxing { weight, time: tau } } => {
             1.0 - weight / (1.0 + weight) * (-time / (tau * (1.0 + weight))).exp()
         }
@@ -62,7 +62,7 @@ fn a_held_force_is_an_elastic_contact_under_what_creep_makes_of_it() {
         (rough(), Boundary::Periodic, SOLID, Some(layer), 0.01),
         (ball(), Boundary::Free, SOLID, Some(layer), 0.02),
     ] {
-        let mut scene = scene(surface, boundary, rheology);
+        let mut scene = scene(surface, boundary, &rheology);
         scene.effects.layer = layer;
         let mut elastic = scene.clone();
         elastic.effects.rheology = Rheology::Elastic;
@@ -70,7 +70,7 @@ fn a_held_force_is_an_elastic_contact_under_what_creep_makes_of_it() {
         let times = [0.0, 0.1, 1.0, 4.0, 10.0];
         let states = history(&MODEL, &scene, &times.map(|time| (time, Load::force(force))));
         for (time, state) in times.into_iter().zip(states) {
-            let expected = elastic.solve(Load::force(force * creep(rheology, time))).unwrap();
+            let expected = elastic.solve(Load::force(force * creep(&rheology, time))).unwrap();
             let of = state.viscoelastic.unwrap();
             // Ten times the solver's tolerance, in rms heights or approaches.
             let error = of.distance_time_error + 1e-6;
@@ -98,11 +98,11 @@ fn both_limits_are_elastic() {
     let arms = [ARM, Relaxing { weight: 1.0, time: 0.3 }];
     let series = Rheology::Prony(PronySeries::new(&arms).unwrap());
     for (surface, boundary) in [(ball(), Boundary::Free), (rough(), Boundary::Periodic)] {
-        let viscous = scene(surface.clone(), boundary, series);
+        let viscous = scene(surface.clone(), boundary, &series);
         let steps = [(0.0, Load::force(0.01)), (200.0, Load::force(0.01))];
         let states = history(&MODEL, &viscous, &steps);
         for (state, factor) in states.iter().zip([5.0, 1.0]) {
-            let mut elastic = scene(surface.clone(), boundary, Rheology::Elastic);
+            let mut elastic = scene(surface.clone(), boundary, &Rheology::Elastic);
             elastic.contact_modulus *= factor;
             let expected = MODEL.prepare(&elastic, 3).unwrap().solve(Load::force(0.01)).unwrap();
             assert_eq!(state.report.contact_cells, expected.report.contact_cells);
@@ -118,7 +118,7 @@ fn both_limits_are_elastic() {
 fn a_held_approach_relaxes_as_the_modulus() {
     for (surface, boundary) in [(ball(), Boundary::Free), (rough(), Boundary::Periodic)] {
         let load = if boundary == Boundary::Free { Load::approach(0.02) } else { Load::mean_gap(0.01) };
-        let scene = scene(surface, boundary, SOLID);
+        let scene = scene(surface, boundary, &SOLID);
         let states = history(&MODEL, &scene, &[(0.0, load), (1.0, load), (7.0, load), (60.0, load)]);
         for state in &states {
             let modulus = 1.0 + 3.0 * (-state.time.unwrap() / 2.0_f64).exp();
@@ -132,7 +132,7 @@ fn a_held_approach_relaxes_as_the_modulus() {
 /// The error of fixed steps falls as the square of their length, and states know it.
 #[test]
 fn steps_are_of_second_order() {
-    let viscous = scene(ball(), Boundary::Free, SOLID);
+    let viscous = scene(ball(), Boundary::Free, &SOLID);
     // Up and down again, so that the contact shrinks too; the corner is the end of a step.
     let at = |count: u32| {
         let steps: Vec<_> = (1..=count)
@@ -163,7 +163,7 @@ fn a_ball_that_is_drawn_back_follows_ting() {
     let (radius, speed, turn) = (1.0_f64, 0.02, 1.0);
     let modulus = |t: f64| MODULUS * (1.0 + 3.0 * (-t / 2.0).exp());
     let model = Bem3d { cells: 129, tolerance: 1e-7, time_tolerance: 1e-4, ..Bem3d::DEFAULT };
-    let scene = scene(ball(), Boundary::Free, SOLID);
+    let scene = scene(ball(), Boundary::Free, &SOLID);
     let times = [0.5, 1.0, 1.15, 1.3, 1.45];
     let approach = |t: f64| speed * if t < turn { t } else { 2.0 * turn - t };
     let states = history(&model, &scene, &times.map(|t| (t, Load::approach(approach(t)))));
@@ -200,7 +200,7 @@ fn a_ball_that_is_drawn_back_follows_ting() {
 /// A body that was pressed recovers after the contact is lost, and may be met again.
 #[test]
 fn a_contact_that_is_lost_recovers() {
-    let mut viscous = scene(ball(), Boundary::Free, SOLID);
+    let mut viscous = scene(ball(), Boundary::Free, &SOLID);
     viscous.outputs.gap = true;
     viscous.outputs.displacement = true;
     let force = Load::force(0.02);
@@ -233,14 +233,14 @@ fn a_contact_that_is_lost_recovers() {
         (2.0, approach(0.02)),
     ];
     let states = history(&MODEL, &viscous, &back);
-    assert_eq!(states[2].force, 0.0);
+    assert!(states[2].force.abs() <= 0.0);
     assert!(states[3].force > 0.0 && states[4].force > states[3].force);
 }
 
 /// Restored from its memory in the middle, a history goes on to the same bits.
 #[test]
 fn a_restored_history_goes_on_to_the_same_bits() {
-    let viscous = scene(rough(), Boundary::Periodic, SOLID);
+    let viscous = scene(rough(), Boundary::Periodic, &SOLID);
     let loads = [(0.0, 0.01), (0.7, 0.02), (1.5, 0.005), (1.5, 0.01), (4.0, 0.012)];
     let loads = loads.map(|(time, force)| (time, Load::force(force)));
     let whole = history(&MODEL, &viscous, &loads);
@@ -264,7 +264,7 @@ fn a_restored_history_goes_on_to_the_same_bits() {
 /// A cycle of the load takes energy, which is less in very slow and very fast ones.
 #[test]
 fn slow_and_fast_cycles_lose_less() {
-    let viscous = scene(ball(), Boundary::Free, SOLID);
+    let viscous = scene(ball(), Boundary::Free, &SOLID);
     let loss = |period: f64| {
         let steps: Vec<_> = (0..=60)
             .map(|k| {
@@ -301,15 +301,15 @@ fn what_has_no_answer_is_refused() {
         Err(error) => error.to_string(),
     };
     let force = Load::force(0.01);
-    let voigt = scene(ball(), Boundary::Free, Rheology::KelvinVoigt { viscosity: 1.0 });
+    let voigt = scene(ball(), Boundary::Free, &Rheology::KelvinVoigt { viscosity: 1.0 });
     assert!(refused(&voigt, force).contains("give the load a time"));
-    let mut stiff = scene(ball(), Boundary::Free, SOLID);
+    let mut stiff = scene(ball(), Boundary::Free, &SOLID);
     stiff.outputs.stiffness = true;
     assert!(refused(&stiff, force).contains("stiffness of a viscoelastic body"));
-    let mut sticky = scene(ball(), Boundary::Free, SOLID);
+    let mut sticky = scene(ball(), Boundary::Free, &SOLID);
     sticky.effects.adhesion = Adhesion::ShortRange { work: 1.0 };
     assert!(refused(&sticky, force).contains("a history too"), "{}", refused(&sticky, force));
-    let mut coated = scene(ball(), Boundary::Free, SOLID);
+    let mut coated = scene(ball(), Boundary::Free, &SOLID);
     let base = LayerBase::HalfSpace { young: 1.0, poisson: 0.3 };
     coated.effects.layer = Some(Layer { thickness: 0.1, young: MODULUS * 0.91, poisson: 0.3, base });
     assert!(refused(&coated, force).contains("relax as the layer does"));
@@ -317,23 +317,23 @@ fn what_has_no_answer_is_refused() {
         first: Body::Elastic { young: 2.0 * MODULUS, poisson: 0.0 },
         second: Body::Elastic { young: 2.0 * MODULUS, poisson: 0.0 },
     };
-    let mut two = scene(ball(), Boundary::Free, SOLID);
+    let mut two = scene(ball(), Boundary::Free, &SOLID);
     two.pair = Some(bodies);
     assert!(refused(&two, force).contains("one has to be rigid"));
     let tolerance = Bem3d { time_tolerance: 0.0, ..MODEL };
-    assert!(tolerance.prepare(&scene(ball(), Boundary::Free, SOLID), 0).is_err());
+    assert!(tolerance.prepare(&scene(ball(), Boundary::Free, &SOLID), 0).is_err());
 }
 
 /// Kelvin and Voigt's body has steps of first order, whose error is controlled all the same.
 #[test]
 fn a_dashpot_in_parallel() {
-    let voigt = scene(ball(), Boundary::Free, Rheology::KelvinVoigt { viscosity: 2.0 });
+    let voigt = scene(ball(), Boundary::Free, &Rheology::KelvinVoigt { viscosity: 2.0 });
     let force = 0.02;
     let times = [0.5, 3.0, 40.0];
     let states = history(&MODEL, &voigt, &times.map(|time| (time, Load::force(force))));
     // The force rises in the first half unit of time: int (1 - exp(-(t - s)/2)) ds / 0.5.
     let crept = |t: f64| 1.0 - ((-(t - 0.5) / 2.0_f64).exp() - (-t / 2.0_f64).exp()) * 2.0 / 0.5;
-    let mut elastic = MODEL.prepare(&scene(ball(), Boundary::Free, Rheology::Elastic), 3).unwrap();
+    let mut elastic = MODEL.prepare(&scene(ball(), Boundary::Free, &Rheology::Elastic), 3).unwrap();
     for (time, state) in times.into_iter().zip(states) {
         let expected = elastic.solve(Load::force(force * crept(time))).unwrap();
         let error = state.viscoelastic.unwrap().distance_time_error;
@@ -349,7 +349,7 @@ fn a_dashpot_in_parallel() {
 /// The hardness bounds the true pressure, and what has flowed stays when the rest has recovered.
 #[test]
 fn a_hardness_bounds_the_pressure_of_a_history() {
-    let mut hard = scene(ball(), Boundary::Free, SOLID);
+    let mut hard = scene(ball(), Boundary::Free, &SOLID);
     let pressure = 0.35;
     hard.effects.hardness = Hardness::Limit { pressure };
     hard.outputs.pressure = true;
@@ -377,7 +377,7 @@ fn a_hardness_bounds_the_pressure_of_a_history() {
     // A hardness that nothing reaches changes nothing.
     hard.effects.hardness = Hardness::Limit { pressure: 100.0 };
     let soft = history(&MODEL, &hard, &steps[..3]);
-    let free = history(&MODEL, &scene(ball(), Boundary::Free, SOLID), &steps[..3]);
+    let free = history(&MODEL, &scene(ball(), Boundary::Free, &SOLID), &steps[..3]);
     for (soft, free) in soft.iter().zip(free) {
         assert_relative_eq!(soft.approach.unwrap(), free.approach.unwrap(), max_relative = 1e-7);
     }
@@ -387,7 +387,7 @@ fn a_hardness_bounds_the_pressure_of_a_history() {
 #[test]
 fn the_work_of_a_jump_is_the_elastic_energy() {
     let model = Bem3d { cells: 65, ..MODEL };
-    let scene = scene(ball(), Boundary::Free, SOLID);
+    let scene = scene(ball(), Boundary::Free, &SOLID);
     let states = history(
         &model,
         &scene,
@@ -405,7 +405,7 @@ fn the_work_of_a_jump_is_the_elastic_energy() {
 #[test]
 fn steps_end_where_the_solver_decides() {
     let model = Bem3d { cells: 24, tolerance: 1e-4, time_tolerance: 1e-9, ..Bem3d::DEFAULT };
-    let mut contact = model.prepare(&scene(rough(), Boundary::Periodic, SOLID), 3).unwrap();
+    let mut contact = model.prepare(&scene(rough(), Boundary::Periodic, &SOLID), 3).unwrap();
     let steps: usize = [0.0, 1.0, 30.0]
         .into_iter()
         .map(|time| contact.advance(Step::new(time, Load::force(0.002))).unwrap())

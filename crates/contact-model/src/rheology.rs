@@ -269,6 +269,6 @@ mod tests {
         let fluid = Rheology::Maxwell { viscosity: 6.0 }.spectrum(4.0).unwrap().unwrap();
         assert_eq!((fluid.equilibrium, fluid.arms[0].rate), (0.0, 1.0 / 6.0));
         let solid = Rheology::KelvinVoigt { viscosity: 6.0 }.spectrum(4.0).unwrap().unwrap();
-        assert!(solid.is_stiff() && solid.viscous == 6.0 && solid.arms.is_empty());
+        assert!(solid.is_stiff() && solid.viscous.to_bits() == 6f64.to_bits() && solid.arms.is_empty());
     }
 }

@@ -493,9 +493,10 @@ impl ViscousHistory {
                 if difference > 0.0 { difference / fine.abs().max(f64::MIN_POSITIVE) } else { 0.0 }
             };
             let prescribed = |error: f64, is_free: bool| if is_free { error } else { 0.0 };
-            let distance = match surface.is_periodic() {
-                true => relative(fine.mean_gap, coarse.mean_gap),
-                false => relative(fine.approach, coarse.approach),
+            let distance = if surface.is_periodic() {
+                relative(fine.mean_gap, coarse.mean_gap)
+            } else {
+                relative(fine.approach, coarse.approach)
             };
             let by_force = matches!(load.normal, ScaledNormal::Force(_));
             [
