@@ -374,6 +374,17 @@ fn a_hardness_bounds_the_pressure_of_a_history() {
     (elastic.effects.rheology, elastic.contact_modulus) = (Rheology::Elastic, 4.0 * MODULUS);
     let expected = history(&MODEL, &elastic, &steps[..1]).remove(0);
     assert_relative_eq!(expected.plastic.unwrap().volume, first.volume, max_relative = 1e-6);
+    // The work of the load is that of the force along the way, what flows included.
+    let ramp: Vec<_> = (0..=80).map(|k| f64::from(k) / 80.0).map(|t| (t, Load::approach(0.02 * t))).collect();
+    let states = history(&MODEL, &hard, &ramp);
+    let by_trapezia: f64 = states
+        .windows(2)
+        .map(|pair| {
+            0.5 * (pair[0].force + pair[1].force) * (pair[1].approach.unwrap() - pair[0].approach.unwrap())
+        })
+        .sum();
+    assert!(states[80].plastic.unwrap().dissipated > 0.1 * by_trapezia);
+    assert_relative_eq!(states[80].viscoelastic.unwrap().work, by_trapezia, max_relative = 5e-3);
     // A hardness that nothing reaches changes nothing.
     hard.effects.hardness = Hardness::Limit { pressure: 100.0 };
     let soft = history(&MODEL, &hard, &steps[..3]);

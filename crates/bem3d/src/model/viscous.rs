@@ -508,9 +508,10 @@ impl ViscousHistory {
         state.report.iterations = work.iterations;
         state.report.applications = work.applications;
         state.report.work.linear_solves = work.linear_solves;
-        // A force times a length.
+        // A force times a length; what has flowed is displaced too.
         let of_load =
             self.elastic.approach(self.elastic.force(PI * memory.work.abs())?)?.copysign(memory.work);
+        let of_load = of_load + state.plastic.map_or(0.0, |plastic| plastic.dissipated);
         Ok(state.with_viscoelastic(ViscoelasticState::new(errors, work.steps).with_work(of_load)))
     }
 
