@@ -399,11 +399,13 @@ impl Question {
     /// stiffness, connected contacts, pressure and gap, and the error of the grid, or with friction the cells that
     /// stick. The effects, the loads and the accuracy are to be set before.
     pub fn request_usual_outputs(&mut self, profile: bool) {
-        let periodic = self.effects.boundary == Boundary::Periodic;
+        let [along_x, along_y] = self.effects.boundary.repeats();
+        let periodic = along_x && along_y;
         let requested = &mut self.outputs;
         requested.outputs.area = true;
-        // A half-plane has no approach and no stiffness, because its displacements have no zero at infinity.
-        requested.outputs.stiffness = periodic || !profile;
+        // A contact that goes on along a line has no approach and no stiffness, because its displacements have no zero at
+        // infinity: that of a profile, or of a map that is periodic along one axis.
+        requested.outputs.stiffness = periodic || along_x == along_y && !profile;
         requested.outputs.mean_gap = periodic;
         requested.outputs.contact_patches = true;
         let both = || vec![FieldFormat::Npy, FieldFormat::Png];
