@@ -16,7 +16,7 @@ use crate::scenes::read::{
     Diagnostic, Distributed, EFFECT_KEYS, Entries, Entry, FieldFormat, Numerics, ReadResult, RegisteredModel,
     RequestedAccuracy, RequestedOutputs, System, nearest, other_words, printed, read_effects, read_outputs,
 };
-use contact_model::{Body, Boundary, Effects, Friction, Output, Pair};
+use contact_model::{Body, Effects, Friction, Output, Pair};
 use std::fmt::Write as _;
 use surface_io::{Dimension, Quantity};
 
