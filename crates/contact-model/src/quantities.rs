@@ -499,7 +499,7 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
         => |s, _| s.plastic.map(|p| p.dissipated).into();
     "work" "work of the load" "W" Si("J"); VISCOELASTIC;
         "work of the normal load since the first step: what the body holds and what has been dissipated in it"
-        => |s, _| s.viscoelastic.map(|v| v.work).into();
+        => |s, _| s.viscoelastic.and_then(|v| v.work).into();
     "branch" "branch" "" Word; Effect("adhesion"); "whether the bodies were brought nearer or drawn apart"
         { average: Average::No, drawn: false }
         => |s, _| s.adhesive.map(|a| a.branch.as_str()).into();

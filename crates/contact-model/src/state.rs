@@ -347,8 +347,10 @@ pub struct ViscoelasticState {
     pub area_time_error: f64,
     /// Number of steps of time since the state before; 0 for a load in no time.
     pub time_steps: usize,
-    /// Work of the normal load since the first step: what the body holds, and what has been dissipated in it.
-    pub work: f64,
+    /// Work of the normal load since the first step: what the body holds, and what has been dissipated in it. With
+    /// periodic boundaries the load works along the fall of the mean gap. `None` where displacements have no zero, in
+    /// contacts that go on along a line.
+    pub work: Option<f64>,
 }
 
 impl ViscoelasticState {
@@ -357,13 +359,13 @@ impl ViscoelasticState {
         [force_time_error, distance_time_error, area_time_error]: [f64; 3],
         time_steps: usize,
     ) -> Self {
-        Self { force_time_error, distance_time_error, area_time_error, time_steps, work: 0.0 }
+        Self { force_time_error, distance_time_error, area_time_error, time_steps, work: None }
     }
 
     /// With the work of the load.
     #[must_use]
-    pub fn with_work(self, work: f64) -> Self {
-        Self { work, ..self }
+    pub fn with_work(self, work: impl Into<Option<f64>>) -> Self {
+        Self { work: work.into(), ..self }
     }
 }
 

@@ -512,6 +512,9 @@ impl ViscousHistory {
         let of_load =
             self.elastic.approach(self.elastic.force(PI * memory.work.abs())?)?.copysign(memory.work);
         let of_load = of_load + state.plastic.map_or(0.0, |plastic| plastic.dissipated);
+        // Without a zero of the displacements the work has none.
+        let has_zero = surface.has_approach() || surface.is_periodic();
+        let of_load = has_zero.then_some(of_load);
         Ok(state.with_viscoelastic(ViscoelasticState::new(errors, work.steps).with_work(of_load)))
     }
 
@@ -619,6 +622,11 @@ fn work_between(
     let (mut moved, operators) = (Vec::new(), &mut surface.problem.operators);
     operators.exact(&after.cells, &change, &pressed, &mut moved, stop).map_err(Interrupted::without_state)?;
     work.applications += 1;
+    // What the constant in the kernel adds is no displacement.
+    let shift = operators.table().shift() * change.iter().sum::<f64>();
+    for u in &mut moved {
+        *u -= shift;
+    }
     let mut sum = vec![0.0; pressed.len()];
     for last in ends.into_iter().flatten() {
         pressed.add_carried(&last.contact, &last.p, &mut sum);
