@@ -333,7 +333,7 @@ impl AdhesiveState {
 
 /// The viscoelastic part of a state, in a history that is solved in steps of time: what the steps cost in accuracy.
 ///
-/// The errors are differences from the same history in steps twice as long. They are errors of the steps alone, beside
+/// The errors are differences from the same history in steps twice as long, relative to the larger of both. They are errors of the steps alone, beside
 /// those of the cells and of the solver.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]

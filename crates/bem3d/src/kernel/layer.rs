@@ -45,7 +45,7 @@ pub struct LayeredBody {
     pub boundary: Boundary,
     /// The layer.
     pub layer: LayerOnGrid,
-    /// What the kernel of a map that repeats itself is exact for.
+    /// The pressures for which the kernel is exact, if the map repeats itself.
     pub exact_for: PeriodicKernel,
 }
 

@@ -21,7 +21,7 @@ const SHIFT: f64 = 2.0;
 /// c of other rectangles over the depth of their kernel.
 const SHIFT_OVER_DEPTH: f64 = 1.25;
 
-/// What the kernel of a map that repeats itself is exact for.
+/// The pressures for which the kernel of a map that repeats itself is exact.
 ///
 /// Both agree for contacts that are many cells wide. Other programs take waves, so that their contacts of few cells
 /// can be compared with those of waves cell by cell.
@@ -59,7 +59,7 @@ pub(super) fn shortest_wave(grid: Grid) -> f64 {
 pub struct PeriodicHalfSpace {
     /// The grid.
     pub grid: Grid,
-    /// What it is exact for.
+    /// The pressures for which the kernel is exact.
     pub exact_for: PeriodicKernel,
 }
 

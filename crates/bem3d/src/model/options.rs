@@ -53,7 +53,7 @@ pub struct Bem3d {
     pub max_outer_iterations: usize,
     /// How small sets are solved.
     pub method: Method,
-    /// What the kernel of periodic boundaries is exact for.
+    /// The pressures for which the kernel of periodic boundaries is exact: uniform on cells, or waves.
     pub periodic_kernel: PeriodicKernel,
     /// Largest error that one step of time of a viscoelastic history may add, relative to the largest value of what is
     /// not prescribed, the force or the distance: steps are as long as it allows. States say how large the errors of all

@@ -60,8 +60,8 @@ pub struct PreparedSurface {
     pub(super) last: Option<LastState>,
     /// The memory of a path with a hardness; `None` without a path.
     pub(super) memory: Option<IndentationMemory>,
-    /// What the history of a viscoelastic body adds to the displacement, row-major in units of the height; empty where
-    /// there is none.
+    /// The displacement by the history of a viscoelastic body, row-major in units of the height; empty where there is
+    /// none.
     pub(super) crept: Vec<f64>,
     /// Friction, and what it remembers of a path.
     pub(super) sliding: Option<SurfaceFriction>,

@@ -59,7 +59,7 @@ impl HistoryMemory {
     }
 }
 
-/// What a load brings about.
+/// The response to a load, in the units of a surface with the modulus E*.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 struct LoadResponse {
     force: f64,
@@ -77,7 +77,7 @@ pub(super) struct ViscousTrack {
     arms: Vec<Vec<f64>>,
     /// The last contact, whose pressures are the true ones.
     last: Option<LastState>,
-    /// What a hardness has left.
+    /// The indentation by a hardness.
     indented: Option<Indented>,
     reached: TrackEnd,
 }
@@ -201,6 +201,8 @@ pub(super) struct ViscousHistory {
     virgin: (Arc<Vec<f64>>, f64),
     /// The hardness, in the units of the modulus E*.
     hardness: Option<f64>,
+    /// Whether a mean gap takes the place of the approach.
+    periodic: bool,
     /// Largest error that one step of time adds, relative.
     tolerance: f64,
     /// The law of a step; another one in comparisons with other programs.
@@ -259,6 +261,7 @@ impl ViscousHistory {
             elastic: surface.nondimensional,
             virgin: (surface.problem.candidates.shared(), surface.mean),
             hardness: surface.hardness,
+            periodic: surface.is_periodic(),
             tolerance: options.time_tolerance,
             law: StepLaw::new,
             memory: HistoryMemory::new(fine),
@@ -272,7 +275,7 @@ impl ViscousHistory {
         self.memory = HistoryMemory::new(fine);
     }
 
-    /// What the next step follows from.
+    /// The memory from which the next step follows.
     pub(super) fn memory(&self) -> &HistoryMemory {
         &self.memory
     }
@@ -449,18 +452,23 @@ impl ViscousHistory {
         }
     }
 
-    /// The larger of responses, and those of a history.
+    /// The largest of a response and of those at the ends of both histories, so that their difference is no more than
+    /// twice as large.
     fn largest(&self, memory: &HistoryMemory, before: LoadResponse) -> LoadResponse {
-        let now = self.response(&memory.fine);
-        LoadResponse {
-            force: before.force.max(now.force.abs()),
-            approach: before.approach.max(now.approach.abs()),
-        }
+        [Some(&memory.fine), memory.coarse.as_ref()].into_iter().flatten().fold(before, |largest, track| {
+            let now = self.response(track);
+            LoadResponse {
+                force: largest.force.max(now.force.abs()),
+                approach: largest.approach.max(now.approach.abs()),
+            }
+        })
     }
 
     fn response(&self, track: &ViscousTrack) -> LoadResponse {
         let TrackEnd { force, approach, mean_gap, .. } = track.reached;
-        LoadResponse { force, approach: approach.max(self.virgin.1 - mean_gap) }
+        // The approach of a periodic surface contains the constant in its kernel.
+        let approach = if self.periodic { self.virgin.1 - mean_gap } else { approach };
+        LoadResponse { force, approach }
     }
 
     /// The difference between both histories in what the load leaves free, relative to the largest.
@@ -490,7 +498,7 @@ impl ViscousHistory {
             let (fine, coarse) = (memory.fine.reached, coarse.reached);
             let relative = |fine: f64, coarse: f64| {
                 let difference = (fine - coarse).abs();
-                if difference > 0.0 { difference / fine.abs().max(f64::MIN_POSITIVE) } else { 0.0 }
+                if difference > 0.0 { difference / fine.abs().max(coarse.abs()) } else { 0.0 }
             };
             let prescribed = |error: f64, is_free: bool| if is_free { error } else { 0.0 };
             let distance = if surface.is_periodic() {
