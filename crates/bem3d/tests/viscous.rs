@@ -452,3 +452,118 @@ fn the_work_of_periodic_and_line_contacts() {
     let state = history(&MODEL, &line, &[(0.0, Load::force(0.01))]).remove(0);
     assert!(state.viscoelastic.unwrap().work.is_none());
 }
+
+/// Rubber under a rigid ball, with friction; nu = 1/2, so that nothing is coupled.
+fn sliding(rheology: &Rheology, friction: f64) -> Scene {
+    let body = Body::Elastic { young: 0.75 * MODULUS, poisson: 0.5 };
+    let mut scene = Scene::of_pair(ball(), Pair { first: Body::Rigid, second: body }).unwrap();
+    scene.effects.rheology = *rheology;
+    scene.effects.friction = Friction::coulomb(friction);
+    scene.outputs =
+        Outputs { area: true, stick_area: true, traction: true, ..Outputs::default() };
+    scene.outputs.pressure = true;
+    scene
+}
+
+fn pushed(force: f64, tangential: f64) -> Load {
+    Load::force(force).with_tangential(Tangential::Force([tangential, 0.0]))
+}
+
+fn displaced(approach: f64, tangential: f64) -> Load {
+    Load::approach(approach).with_tangential(Tangential::Displacement([tangential, 0.0]))
+}
+
+/// At a held displacement tractions relax as the modulus does, and as the pressures do that limit them: what sticks and
+/// what slips stays.
+#[test]
+fn tractions_relax_as_pressures_do() {
+    let scene = sliding(&SOLID, 0.3);
+    let load = displaced(0.02, 0.004);
+    let states = history(&MODEL, &scene, &[(0.0, load), (1.0, load), (7.0, load), (60.0, load)]);
+    let of = |state: &ContactState| state.tangential.unwrap();
+    let first = of(&states[0]);
+    assert!(first.stick_area.unwrap() > 0.0 && first.slip_area.unwrap() > 0.0, "{first:?}");
+    for state in &states {
+        let modulus = 1.0 + 3.0 * (-state.time.unwrap() / 2.0_f64).exp();
+        assert_relative_eq!(of(state).force[0] / first.force[0], modulus / 4.0, max_relative = 1e-6);
+        assert_relative_eq!(of(state).stick_area.unwrap(), first.stick_area.unwrap());
+        assert_relative_eq!(of(state).dissipated, first.dissipated, max_relative = 1e-6);
+        assert!(state.viscoelastic.unwrap().tangential_time_error.unwrap() < 1e-6);
+    }
+}
+
+/// A tangential force in no time on a contact that has relaxed meets the glassy body, and its displacement creeps as a
+/// body under one force does: the tractions of Cattaneo stay as they are.
+#[test]
+fn a_tangential_force_on_a_relaxed_contact_creeps() {
+    let scene = sliding(&SOLID, 0.3);
+    let mut elastic = scene.clone();
+    elastic.effects.rheology = Rheology::Elastic;
+    let (force, tangential) = (0.01, 0.5 * 0.3 * 0.01);
+    let still = [(1.0, pushed(force, 0.0)), (2.0, pushed(force, tangential))];
+    let expected = history(&MODEL, &elastic, &still).pop().unwrap();
+    let times = [200.0, 200.5, 202.0, 210.0, 400.0];
+    let mut steps = vec![(0.0, pushed(force, 0.0)), (200.0, pushed(force, 0.0))];
+    steps.extend(times.map(|time| (time, pushed(force, tangential))));
+    for state in &history(&MODEL, &scene, &steps)[2..] {
+        let creep = creep(&SOLID, state.time.unwrap() - 200.0);
+        let (found, expected) = (state.tangential.unwrap(), expected.tangential.unwrap());
+        let error = 1e-5 + state.viscoelastic.unwrap().tangential_time_error.unwrap();
+        assert_relative_eq!(found.displacement[0], creep * expected.displacement[0], max_relative = error);
+        assert_relative_eq!(found.stick_area.unwrap(), expected.stick_area.unwrap(), max_relative = 0.02);
+        assert_relative_eq!(found.force[0], tangential);
+    }
+}
+
+/// Normal and tangential force that grow in one ratio below the coefficient of friction let nothing slip: tractions are
+/// that ratio of the pressures, and so are the displacements in bodies of E* = G* that have one function of time.
+#[test]
+fn a_load_of_one_direction_sticks() {
+    let scene = sliding(&SOLID, 0.5);
+    let model = Bem3d { time_tolerance: 1e-4, ..MODEL };
+    let states = history(&model, &scene, &[(4.0, pushed(0.01, 0.002)), (8.0, pushed(0.01, 0.002))]);
+    // 1/G* over 1/E* of an incompressible body is 3/2.
+    let compliance = 1.5;
+    for state in &states {
+        let of = state.tangential.unwrap();
+        let ratio = of.displacement[0] / state.approach.unwrap();
+        // Contact grows by whole cells.
+        assert_relative_eq!(ratio, 0.2 * compliance, max_relative = 0.03);
+        assert!(of.slip_area.unwrap() < 0.35 * state.area.unwrap(), "{of:?}");
+        let fields = state.fields.as_ref().unwrap();
+        let [along, across] = fields.traction.as_ref().unwrap();
+        let pressure = fields.pressure.as_ref().unwrap();
+        let force: f64 = pressure.values().iter().sum();
+        let along = along.values().iter().zip(pressure.values()).map(|(q, p)| (q - 0.2 * p).abs());
+        let across = across.values().iter().map(|q| q.abs());
+        let [along, across] = [along.sum::<f64>() / force, across.sum::<f64>() / force];
+        assert!(along < 0.02 && across < 0.02, "{along} {across}");
+    }
+}
+
+/// A path with friction goes on to the same bits from its memory.
+#[test]
+fn friction_goes_on_from_a_memory() {
+    let scene = sliding(&SOLID, 0.3);
+    let steps = [
+        (1.0, pushed(0.01, 0.001)),
+        (2.0, pushed(0.01, 0.0025)),
+        (2.0, pushed(0.008, 0.001)),
+        (5.0, pushed(0.006, -0.001)),
+        (6.0, displaced(0.0, 0.0)),
+        (9.0, displaced(0.01, 0.002)),
+    ];
+    let whole = history(&MODEL, &scene, &steps);
+    for cut in 1..steps.len() {
+        let mut contact = MODEL.prepare(&scene, 3).unwrap();
+        for &(time, load) in &steps[..cut] {
+            contact.advance(Step::new(time, load)).unwrap();
+        }
+        let memory = contact.memory().unwrap().unwrap();
+        let mut other = MODEL.prepare(&scene, 3).unwrap();
+        other.recall(&memory).unwrap();
+        for (&(time, load), expected) in steps[cut..].iter().zip(&whole[cut..]) {
+            assert_eq!(other.advance(Step::new(time, load)).unwrap(), *expected, "{cut} {time}");
+        }
+    }
+}

@@ -107,7 +107,7 @@ pub fn advance(
         let contact = PressedCells { cells: &normal.contact, pressure: &normal.p };
         let start = tractions.as_ref().map(|last| (&last.cells, &last.traction[..]));
         let state = friction.advance(
-            SlipStep { before, contact, load: tangential, guess: start },
+            SlipStep { before, contact, load: tangential, guess: start, relaxes: false },
             tangential_limits,
             stop,
         )?;

@@ -24,7 +24,7 @@ pub struct PressedCells<'a> {
 }
 
 /// The start of the next increment. The default is no contact, no traction and no displacement.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SlipMemory {
     /// The contact.
     pub cells: CellSet,
@@ -33,7 +33,7 @@ pub struct SlipMemory {
     /// Tangential displacement of the bodies.
     pub displacement: [f64; 2],
     /// `delta - u` on the contact, with u its tangential displacement: the total slip of each cell from its
-    /// position without any traction.
+    /// position without any traction. Empty where it is not known yet.
     pub offset: Vec<f64>,
     /// Slip of each cell since it touched.
     pub slip: Vec<f64>,
@@ -114,6 +114,8 @@ pub struct SlipStep<'a> {
     pub load: FrictionLoad,
     /// Tractions on some cells to begin with, admissible or not; `None`: those before.
     pub guess: Option<(&'a CellSet, &'a [f64])>,
+    /// Whether tractions change while nothing slips: those before are then not the ones that were solved for.
+    pub relaxes: bool,
 }
 
 /// Friction on one surface: operators and room, kept from increment to increment.
@@ -222,7 +224,7 @@ impl FrictionSolver {
         limits: FrictionLimits,
         stop: Stop<'_>,
     ) -> Result<FrictionState, NotAdvanced> {
-        let SlipStep { before, contact: PressedCells { cells, pressure }, load, guess } = step;
+        let SlipStep { before, contact: PressedCells { cells, pressure }, load, guess, .. } = step;
         let limit = load.limits(pressure);
         if let TangentialControl::Force([x, y]) = load.control {
             let largest = sum(&limit);
@@ -243,10 +245,20 @@ impl FrictionSolver {
             displacement: before.displacement,
         };
         let found = increment::solve(self.systems(), increment, start, limits, stop)?;
-        if self.is_unmoved(step, &limit, &found, limits) {
+        if !step.relaxes && self.is_unmoved(step, &limit, &found, limits) {
             return Ok(self.unmoved(before, load, &found));
         }
-        Ok(moved(step, limit, &offset, found))
+        let unresolved = limits.unresolved * sum(&limit) * found.length;
+        let still = step.relaxes && weighted(&limit, &found.slip) <= unresolved;
+        let mut state = moved(step, limit, &offset, found);
+        if still && !before.cells.is_empty() {
+            // Cells at their limit go on as they went when something slipped last.
+            state.slip = carried(cells, &before.cells, &before.moved);
+            state.memory.moved.clone_from(&state.slip);
+            let (tractions, rho) = (&state.memory.traction, increment::step(&self.operators));
+            state.stick = increment::sticking(cells, (tractions, &state.slip), &state.limit, rho);
+        }
+        Ok(state)
     }
 
     /// Whether nothing has moved within what is resolved.
@@ -297,7 +309,7 @@ impl FrictionSolver {
         cells: &CellSet,
         stop: Stop<'_>,
     ) -> Result<Vec<f64>, Interrupted> {
-        if *cells == before.cells {
+        if *cells == before.cells && !before.offset.is_empty() {
             return Ok(before.offset.clone());
         }
         let mut u = Vec::new();

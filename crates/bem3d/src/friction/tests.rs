@@ -70,7 +70,7 @@ fn advance(
 ) -> FrictionState {
     let state = friction
         .advance(
-            SlipStep { before, contact: pressed.cells(), load: load(control), guess: None },
+            SlipStep { before, contact: pressed.cells(), load: load(control), guess: None, relaxes: false },
             LIMITS,
             &never,
         )
@@ -288,6 +288,7 @@ fn a_force_is_held_up_to_gross_slip() {
                     contact: all.cells(),
                     load: load(control),
                     guess: None,
+                    relaxes: false,
                 },
                 limits,
                 &never,
@@ -303,7 +304,7 @@ fn a_force_is_held_up_to_gross_slip() {
     }
     let beyond = TangentialControl::Force([0.0, -1.001 * most]);
     let refused = friction(grid, Boundary::Free, 0.43).advance(
-        SlipStep { before: &SlipMemory::default(), contact: all.cells(), load: load(beyond), guess: None },
+        SlipStep { before: &SlipMemory::default(), contact: all.cells(), load: load(beyond), guess: None, relaxes: false },
         LIMITS,
         &never,
     );
@@ -327,7 +328,7 @@ fn first_with(
 ) -> FrictionState {
     let load = FrictionLoad { law: FrictionLaw::coulomb(mu), control };
     let before = SlipMemory::default();
-    let step = SlipStep { before: &before, contact: pressed.cells(), load, guess: None };
+    let step = SlipStep { before: &before, contact: pressed.cells(), load, guess: None, relaxes: false };
     let state = solver.advance(step, LIMITS, &never).unwrap();
     assert_eq!(state.status, Status::Converged, "{mu} {control:?}: {:e}", state.duality_gap);
     state
@@ -347,7 +348,7 @@ fn without_a_load_and_without_friction_there_is_no_traction() {
     close(&none.memory.displacement, &[0.0, 0.0], 0.0);
     let load = FrictionLoad { law: FrictionLaw::coulomb(0.0), control: Force([1e-9, 0.0]) };
     let before = SlipMemory::default();
-    let step = SlipStep { before: &before, contact: all.cells(), load, guess: None };
+    let step = SlipStep { before: &before, contact: all.cells(), load, guess: None, relaxes: false };
     let refused = solver.advance(step, LIMITS, &never).map(|_| ());
     assert_eq!(refused.unwrap_err(), NotAdvanced::Force { largest: 0.0 });
 }
@@ -384,7 +385,7 @@ fn without_contact_bodies_slide_and_touch_where_they_lie() {
         &[0.0; 3],
         0.0,
     );
-    let again = SlipStep { before: &state.memory, contact: all.cells(), load: load(control), guess: None };
+    let again = SlipStep { before: &state.memory, contact: all.cells(), load: load(control), guess: None, relaxes: false };
     let again = solver.advance(again, LIMITS, &never).unwrap();
     assert!(largest(&again.memory.traction) < 1e-10 * all.friction(), "touched where it lies");
 }
@@ -430,7 +431,7 @@ fn stiffnesses_are_difference_quotients() {
         let advance = |solver: &mut FrictionSolver, before: &SlipMemory, control| {
             solver
                 .advance(
-                    SlipStep { before, contact: all.cells(), load: load(control), guess: None },
+                    SlipStep { before, contact: all.cells(), load: load(control), guess: None, relaxes: false },
                     limits,
                     &never,
                 )
@@ -574,7 +575,7 @@ fn the_error_of_a_stiffness_holds_its_true_error() {
                 let begin = SlipMemory::default();
                 let state = solver
                     .advance(
-                        SlipStep { before: &begin, contact: all.cells(), load: load(control), guess: None },
+                        SlipStep { before: &begin, contact: all.cells(), load: load(control), guess: None, relaxes: false },
                         limits,
                         &never,
                     )

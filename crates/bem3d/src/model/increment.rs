@@ -80,11 +80,12 @@ impl PreparedSurface {
         ScaledTangential { control, prescribed }: ScaledTangential,
         stop: Stop<'_>,
     ) -> Result<Slid> {
-        let SurfaceFriction { friction, law, before, .. } = sliding;
+        let SurfaceFriction { friction, law, before, relaxes, .. } = sliding;
+        let relaxes = *relaxes;
         let (mut limits, tolerance) = (self.friction_limits(), self.options.tolerance);
         let work = friction.work();
         let load = FrictionLoad { law: *law, control };
-        let first = friction.advance(SlipStep { before, contact, load, guess: None }, limits, stop);
+        let first = friction.advance(SlipStep { before, contact, load, guess: None, relaxes }, limits, stop);
         let mut state = first.map_err(|error| self.not_advanced(control, error))?;
         // A stopped state has no stiffness.
         let mut stiffness = self.tangential_stiffness(friction, &state, stop).unwrap_or([None, None]);
@@ -96,7 +97,7 @@ impl PreparedSurface {
             }
             limits.tolerance = limits.tolerance.min(state.duality_gap) * further(tolerance / error);
             let guess = Some((contact.cells, &state.memory.traction[..]));
-            let Ok(next) = friction.advance(SlipStep { before, contact, load, guess }, limits, stop) else {
+            let Ok(next) = friction.advance(SlipStep { before, contact, load, guess, relaxes }, limits, stop) else {
                 break;
             };
             if next.duality_gap >= state.duality_gap {

@@ -229,11 +229,8 @@ const NOT_COMBINED: &[NotCombined] = &[
                  adhesion depends on its range",
     },
     NotCombined {
-        effects: [
-            RHEOLOGY,
-            &[Effect::Friction, Effect::ShearStrength, Effect::TractionLimit, Effect::FullCoupling],
-        ],
-        reason: "not solved, as tangential displacements would have a history too",
+        effects: [RHEOLOGY, &[Effect::FullCoupling]],
+        reason: "not solved, as the tractions would displace the surface whose heights have a history",
     },
 ];
 

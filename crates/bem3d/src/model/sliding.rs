@@ -21,6 +21,8 @@ pub(super) struct SurfaceFriction {
     pub(super) law: FrictionLaw,
     /// Whether it acts on the attached share of each cell in place of its pressure.
     pub(super) on_shares: bool,
+    /// Whether tractions change while nothing slips, as those of a body with a history do.
+    pub(super) relaxes: bool,
     /// The undeformed gaps, without displacements under tractions.
     pub(super) undeformed: Arc<Vec<f64>>,
     /// The start of the next increment.
@@ -98,6 +100,7 @@ impl SurfaceFriction {
             friction: FrictionSolver::new(problem.grid(), boundary, [compliance, beta], tuning, recorder),
             law: nondimensional(law, units)?,
             on_shares: false,
+            relaxes: false,
             undeformed: problem.candidates.shared(),
             before: SlipMemory::default(),
             dissipated: 0.0,
@@ -146,4 +149,13 @@ fn nondimensional(law: FrictionLaw, units: Nondimensionalisation) -> Result<Fric
         shear_strength: pressure("shear strength of friction", law.shear_strength)?,
         limit: law.limit.map(|limit| pressure("limit of friction", limit)).transpose()?,
     })
+}
+
+/// The same law in the units of a body whose modulus is this many times as large.
+pub(super) fn over(law: FrictionLaw, modulus: f64) -> FrictionLaw {
+    FrictionLaw {
+        coefficient: law.coefficient,
+        shear_strength: law.shear_strength / modulus,
+        limit: law.limit.map(|limit| limit / modulus),
+    }
 }

@@ -8,17 +8,27 @@
 //! `K H/E*`, and any elastic solver finds it. Each arm of the relaxation remembers one number a cell, and no
 //! integral goes over the past.
 //!
+//! Tangential tractions have the same history, component by component, where they displace nothing normally.
+//!
 //! The error of the steps is measured by a second history with steps twice as long.
 
+mod step_law;
+mod track;
+
+use self::step_law::StepLaw;
+use self::track::{TrackEnd, ViscousTrack};
 use super::load::{ScaledLoad, ScaledNormal};
 use super::memory::{IndentationMemory, Indented};
 use super::options::NAME;
 use super::prepared::PreparedSurface;
+use super::sliding::over;
 use crate::active_set::{Bounds, Candidates, LastState};
+use crate::friction::TangentialControl;
 use crate::geometry::{CellSet, Grid};
+use crate::law::length;
 use crate::real::{sum_of_pairs, update};
 use contact_model::{
-    Conductance, ContactState, Error, Interrupted, Nondimensionalisation, Outputs, RelaxationSpectrum,
+    Conductance, ContactState, Coupling, Error, FrictionLaw, Interrupted, Nondimensionalisation, Outputs, RelaxationSpectrum,
     Result, Rheology, Scene, Stop, ViscoelasticState,
 };
 use serde::{Deserialize, Serialize};
@@ -65,130 +75,8 @@ struct LoadResponse {
     force: f64,
     /// The approach; of a periodic surface by how much the mean gap has fallen from that of the first touch.
     approach: f64,
-}
-
-/// One history: P and the memory of the arms, on the cells that were once in contact.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct ViscousTrack {
-    cells: CellSet,
-    /// P.
-    pressure: Vec<f64>,
-    /// q of each arm: `p = e P + sum w q` in units of E*.
-    arms: Vec<Vec<f64>>,
-    /// The last contact, whose pressures are the true ones.
-    last: Option<LastState>,
-    /// The indentation by a hardness.
-    indented: Option<Indented>,
-    reached: TrackEnd,
-}
-
-/// The load at which a track has arrived, in the units of a surface with the modulus E*.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-struct TrackEnd {
-    force: f64,
-    approach: f64,
-    mean_gap: f64,
-    /// Number of cells in contact.
-    cells: usize,
-}
-
-/// How the material answers a step of time in which P goes straight.
-struct StepLaw {
-    /// M.
-    modulus: f64,
-    /// The share of `M H` that is `P` at the beginning, without arms.
-    kept: f64,
-    arms: Vec<ArmStep>,
-}
-
-/// `q = decay q_0 + rise (P - P_0)`.
-struct ArmStep {
-    weight: f64,
-    decay: f64,
-    rise: f64,
-}
-
-impl StepLaw {
-    /// That of a step of this duration; 0 is a jump.
-    ///
-    /// The arms are exact for a P that goes straight. A dashpot beside them takes the end of the step as if the
-    /// pressure had been constant, which is of first order in the duration, but never alternates.
-    fn new(spectrum: &RelaxationSpectrum, duration: f64) -> Self {
-        let arms: Vec<_> = (spectrum.arms.iter())
-            .map(|arm| {
-                let angle = arm.rate * duration;
-                let rise = if angle > 0.0 { -(-angle).exp_m1() / angle } else { 1.0 };
-                ArmStep { weight: arm.weight, decay: (-angle).exp(), rise }
-            })
-            .collect();
-        let (mut modulus, mut kept) = (spectrum.equilibrium, 0.0);
-        if spectrum.is_stiff() {
-            let angle = spectrum.equilibrium * duration / spectrum.viscous;
-            modulus /= -(-angle).exp_m1();
-            kept = modulus * (-angle).exp();
-        }
-        modulus += arms.iter().map(|arm| arm.weight * arm.rise).sum::<f64>();
-        Self { modulus, kept, arms }
-    }
-}
-
-impl ViscousTrack {
-    /// Before any load, at the first touch.
-    fn new(surface: &PreparedSurface, spectrum: &RelaxationSpectrum) -> Self {
-        let mean_gap = surface.mean - surface.problem.candidates.range().first;
-        Self {
-            arms: vec![Vec::new(); spectrum.arms.len()],
-            reached: TrackEnd { mean_gap, ..TrackEnd::default() },
-            ..Self::default()
-        }
-    }
-
-    /// H on the cells of the track.
-    fn left(&self, law: &StepLaw) -> Vec<f64> {
-        let mut left: Vec<f64> = self.pressure.iter().map(|p| law.kept * p).collect();
-        for (arm, step) in self.arms.iter().zip(&law.arms) {
-            for ((left, p), q) in left.iter_mut().zip(&self.pressure).zip(arm) {
-                *left += step.weight * (step.rise * p - step.decay * q);
-            }
-        }
-        for value in &mut left {
-            *value /= law.modulus;
-        }
-        left
-    }
-
-    /// The track after a step that left H and solved for `P - H` on these cells.
-    fn advanced(&self, law: &StepLaw, left: &[f64], contact: &CellSet, solved: &[f64]) -> Self {
-        let cells = self.cells.union(contact);
-        let before = cells.carry(&self.cells, &self.pressure);
-        let mut pressure = cells.carry(&self.cells, left);
-        cells.add_carried(contact, solved, &mut pressure);
-        let arms = (self.arms.iter().zip(&law.arms))
-            .map(|(arm, step)| {
-                let mut arm = cells.carry(&self.cells, arm);
-                for ((q, p), before) in arm.iter_mut().zip(&pressure).zip(&before) {
-                    *q = step.decay * *q + step.rise * (p - before);
-                }
-                arm
-            })
-            .collect();
-        Self { cells, pressure, arms, ..Self::default() }
-    }
-
-    /// Whether its cells and numbers are those of a surface and a material.
-    fn fits(&self, grid: Grid, arms: usize) -> bool {
-        let sound = |values: &Vec<f64>| {
-            values.len() == self.cells.len() && values.iter().all(|value| value.is_finite())
-        };
-        let TrackEnd { force, approach, mean_gap, .. } = self.reached;
-        self.cells.is_on(grid)
-            && self.arms.len() == arms
-            && sound(&self.pressure)
-            && self.arms.iter().all(sound)
-            && self.last.as_ref().is_none_or(|last| last.fits(grid))
-            && self.indented.as_ref().is_none_or(|indented| indented.fits(grid))
-            && [force, approach, mean_gap].into_iter().all(f64::is_finite)
-    }
+    tangential_force: [f64; 2],
+    tangential_displacement: [f64; 2],
 }
 
 /// A viscoelastic surface, and where it is in its history.
@@ -201,6 +89,8 @@ pub(super) struct ViscousHistory {
     virgin: (Arc<Vec<f64>>, f64),
     /// The hardness, in the units of the modulus E*.
     hardness: Option<f64>,
+    /// The law of friction, in the units of the modulus E*.
+    friction: Option<FrictionLaw>,
     /// Whether a mean gap takes the place of the approach.
     periodic: bool,
     /// Largest error that one step of time adds, relative.
@@ -223,15 +113,21 @@ struct TimeStep<'a> {
 /// Refuses what a viscoelastic contact does not have.
 ///
 /// # Errors
-/// [`Error::Unsupported`] for a stiffness, a conductance, two bodies that deform and a layer on another material.
+/// [`Error::Unsupported`] for a stiffness, a conductance, two bodies that deform, a layer on another material and
+/// friction that displaces normally too.
 pub(super) fn check_rheology(scene: &Scene) -> Result<()> {
     let rheology = &scene.effects.rheology;
     if *rheology == Rheology::Elastic {
         return Ok(());
     }
     let refused = |what: &'static str| Err(Error::unsupported(NAME, what));
-    let Outputs { stiffness, stiffness_fixed_area, conductance, .. } = scene.outputs;
-    if stiffness || stiffness_fixed_area {
+    let outputs = scene.outputs;
+    let Outputs { stiffness, stiffness_fixed_area, conductance, .. } = outputs;
+    if stiffness
+        || stiffness_fixed_area
+        || outputs.tangential_stiffness
+        || outputs.tangential_stiffness_stuck
+    {
         return refused("the stiffness of a viscoelastic body (it depends on how fast one pushes)");
     }
     if conductance != Conductance::Off {
@@ -243,6 +139,9 @@ pub(super) fn check_rheology(scene: &Scene) -> Result<()> {
         return refused(
             "a viscoelastic layer on a half-space, which would have to relax as the layer does (a rigid base need not)",
         );
+    }
+    if scene.coupling(NAME)? == Some(Coupling::Full) {
+        return refused("full coupling of normal and tangential displacements of viscoelastic bodies");
     }
     scene.pair.as_ref().map_or(Ok(()), |pair| rheology.check_pair(pair, NAME))
 }
@@ -261,6 +160,7 @@ impl ViscousHistory {
             elastic: surface.nondimensional,
             virgin: (surface.problem.candidates.shared(), surface.mean),
             hardness: surface.hardness,
+            friction: surface.sliding.as_ref().map(|sliding| sliding.law),
             periodic: surface.is_periodic(),
             tolerance: options.time_tolerance,
             law: StepLaw::new,
@@ -289,6 +189,7 @@ impl ViscousHistory {
             && step.is_none_or(|step| step.is_finite() && step > 0.0)
             && largest.force.is_finite()
             && largest.approach.is_finite()
+            && largest.tangential_force.into_iter().chain(largest.tangential_displacement).all(f64::is_finite)
             && work.is_finite()
     }
 
@@ -306,9 +207,13 @@ impl ViscousHistory {
         (surface.mean, surface.last, surface.memory) = (*mean, None, None);
         surface.crept = Vec::new();
         surface.limit_pressure(self.hardness);
+        if let (Some(sliding), Some(law)) = (&mut surface.sliding, self.friction) {
+            sliding.begin();
+            sliding.law = law;
+        }
     }
 
-    /// The surface at the beginning of a step of a track, and H on the cells of the track.
+    /// The surface at the beginning of a step of a track, and what the history leaves of pressures and tractions.
     ///
     /// # Errors
     /// [`Error::Stopped`] by the stop; [`Error::Domain`] where no `f64` holds the modulus of the step.
@@ -318,7 +223,7 @@ impl ViscousHistory {
         track: &ViscousTrack,
         (law, guess): (&StepLaw, Option<&LastState>),
         stop: Stop<'_>,
-    ) -> Result<Vec<f64>> {
+    ) -> Result<[Vec<f64>; 2]> {
         self.rest(surface);
         surface.nondimensional = self.elastic.with_modulus_times(law.modulus)?;
         let guess = guess.or(track.last.as_ref());
@@ -332,9 +237,18 @@ impl ViscousHistory {
             }
             surface.memory = Some(memory);
         }
-        let left = track.left(law);
-        surface.creep(&track.cells, &left, stop)?;
-        Ok(left)
+        let left = track.pressures.left(law);
+        surface.creep(&track.pressures.cells, &left, stop)?;
+        let mut of_tractions = Vec::new();
+        if let (Some(sliding), Some(slid), Some(friction)) =
+            (&mut surface.sliding, &track.slid, self.friction)
+        {
+            sliding.law = over(friction, law.modulus);
+            sliding.relaxes = true;
+            of_tractions = slid.tractions.left(law);
+            slid.begin(law, &of_tractions, sliding);
+        }
+        Ok([left, of_tractions])
     }
 
     /// The state after a piece of the path in which the load goes straight to this one. A load that was stopped, or
@@ -386,7 +300,7 @@ impl ViscousHistory {
             return Ok((self.finished(surface, state, &memory, load, work)?, memory));
         }
         let start = memory.fine.reached;
-        let at = |share: f64| ScaledLoad { normal: start.towards(load.normal, share), ..load };
+        let at = |share: f64| start.towards(load, share);
         // The largest response that any attempt has shown: what errors are relative to.
         let mut scale = memory.largest;
         let (mut done, mut step) = (0.0, memory.step.unwrap_or(duration));
@@ -457,18 +371,25 @@ impl ViscousHistory {
     fn largest(&self, memory: &HistoryMemory, before: LoadResponse) -> LoadResponse {
         [Some(&memory.fine), memory.coarse.as_ref()].into_iter().flatten().fold(before, |largest, track| {
             let now = self.response(track);
+            let larger = |a: [f64; 2], b: [f64; 2]| if length(a) >= length(b) { a } else { b };
             LoadResponse {
                 force: largest.force.max(now.force.abs()),
                 approach: largest.approach.max(now.approach.abs()),
+                tangential_force: larger(largest.tangential_force, now.tangential_force),
+                tangential_displacement: larger(
+                    largest.tangential_displacement,
+                    now.tangential_displacement,
+                ),
             }
         })
     }
 
     fn response(&self, track: &ViscousTrack) -> LoadResponse {
-        let TrackEnd { force, approach, mean_gap, .. } = track.reached;
+        let TrackEnd { force, approach, mean_gap, tangential_force, tangential_displacement, .. } =
+            track.reached;
         // The approach of a periodic surface contains the constant in its kernel.
         let approach = if self.periodic { self.virgin.1 - mean_gap } else { approach };
-        LoadResponse { force, approach }
+        LoadResponse { force, approach, tangential_force, tangential_displacement }
     }
 
     /// The difference between both histories in what the load leaves free, relative to the largest.
@@ -476,10 +397,33 @@ impl ViscousHistory {
         let Some(coarse) = &memory.coarse else { return 0.0 };
         let (fine, coarse) = (self.response(&memory.fine), self.response(coarse));
         let relative = |difference: f64, of: f64| if difference == 0.0 { 0.0 } else { difference.abs() / of };
-        match load.normal {
+        let normal = match load.normal {
             ScaledNormal::Force(_) => relative(fine.approach - coarse.approach, scale.approach),
             _ => relative(fine.force - coarse.force, scale.force),
-        }
+        };
+        let apart = |a: [f64; 2], b: [f64; 2]| length([a[0] - b[0], a[1] - b[1]]);
+        let tangential = match load.tangential.control {
+            TangentialControl::Force(_) => relative(
+                apart(fine.tangential_displacement, coarse.tangential_displacement),
+                length(scale.tangential_displacement),
+            ),
+            TangentialControl::Displacement(_) => {
+                relative(apart(fine.tangential_force, coarse.tangential_force), length(scale.tangential_force))
+            }
+        };
+        normal.max(tangential)
+    }
+
+    /// The relative difference between both histories in what a tangential load leaves free; `None` without friction.
+    fn tangential_error(&self, memory: &HistoryMemory, load: ScaledLoad) -> Option<f64> {
+        self.friction?;
+        let Some(coarse) = &memory.coarse else { return Some(0.0) };
+        let [fine, coarse] = [memory.fine.reached, coarse.reached].map(|end| match load.tangential.control {
+            TangentialControl::Force(_) => end.tangential_displacement,
+            TangentialControl::Displacement(_) => end.tangential_force,
+        });
+        let difference = length([fine[0] - coarse[0], fine[1] - coarse[1]]);
+        Some(if difference > 0.0 { difference / length(fine).max(length(coarse)) } else { 0.0 })
     }
 
     /// The state at the end of a piece, with the error of its steps.
@@ -523,7 +467,8 @@ impl ViscousHistory {
         // Without a zero of the displacements the work has none.
         let has_zero = surface.has_approach() || surface.is_periodic();
         let of_load = has_zero.then_some(of_load);
-        Ok(state.with_viscoelastic(ViscoelasticState::new(errors, work.steps).with_work(of_load)))
+        let found = ViscoelasticState::new(errors, work.steps).with_work(of_load);
+        Ok(state.with_viscoelastic(found.with_tangential_error(self.tangential_error(memory, load))))
     }
 
     /// A step of one track: its state, and the track at its end.
@@ -538,14 +483,18 @@ impl ViscousHistory {
         let law = (self.law)(&self.spectrum, step.duration);
         let modulus = law.modulus;
         let left = self.begin_step(surface, track, (&law, step.guess), stop)?;
-        let load = ScaledLoad { normal: step.load.normal.over(modulus), ..step.load };
+        let load = step.load.over(modulus);
         let state = surface.at(load, stop)?;
         work.add(&state);
         let touches = state.force > 0.0;
         let last = surface.last.take().filter(|_| touches);
         let (contact, solved): (CellSet, &[f64]) =
             last.as_ref().map_or((CellSet::default(), &[]), |last| (last.contact.clone(), &last.p));
-        let mut next = track.advanced(&law, &left, &contact, solved);
+        let [of_pressures, of_tractions] = left;
+        let pressures = track.pressures.advanced(&law, &of_pressures, &contact, solved);
+        let sliding = surface.sliding.as_ref();
+        let slid = track.slid.as_ref().zip(sliding);
+        let slid = slid.map(|(slid, sliding)| slid.advanced(&law, &of_tractions, sliding));
         let force = last.as_ref().map_or(0.0, |last| last.force);
         let approach = match (&last, load.normal) {
             (Some(last), _) => last.d,
@@ -554,33 +503,31 @@ impl ViscousHistory {
             (None, ScaledNormal::Force(_)) => surface.problem.candidates.range().first,
         };
         let mean_gap = surface.mean_gap(surface.is_full(&contact), approach, force);
-        next.reached = TrackEnd { force: modulus * force, approach, mean_gap, cells: contact.len() };
-        next.last = last.map(|last| last.scaled(modulus));
+        let cells = contact.len();
+        let reached =
+            TrackEnd { force: modulus * force, approach, mean_gap, cells, ..TrackEnd::default() };
         let grid = surface.problem.grid();
-        next.indented = surface.memory.as_ref().map(|memory| Indented::of(grid, memory));
+        let next = ViscousTrack {
+            pressures,
+            slid,
+            last: last.map(|last| last.scaled(modulus)),
+            indented: surface.memory.as_ref().map(|memory| Indented::of(grid, memory)),
+            reached: reached.with_slip(modulus, surface.sliding.as_ref()),
+        };
         Ok((state, next))
     }
 }
 
-impl TrackEnd {
-    /// The load at a share of the way from here to another.
-    fn towards(self, load: ScaledNormal, share: f64) -> ScaledNormal {
-        let between = |from: f64, to: f64| if share >= 1.0 { to } else { from + share * (to - from) };
-        match load {
-            ScaledNormal::Force(to) => ScaledNormal::Force(between(self.force, to)),
-            ScaledNormal::Approach(to) => ScaledNormal::Approach(between(self.approach, to)),
-            ScaledNormal::MeanGap(to) => ScaledNormal::MeanGap(between(self.mean_gap, to)),
-        }
-    }
-}
-
-impl ScaledNormal {
+impl ScaledLoad {
     /// The load in the units of a body with another modulus.
-    fn over(self, modulus: f64) -> Self {
-        match self {
-            Self::Force(force) => Self::Force(force / modulus),
-            other => other,
+    fn over(mut self, modulus: f64) -> Self {
+        if let ScaledNormal::Force(force) = &mut self.normal {
+            *force /= modulus;
         }
+        if let TangentialControl::Force(force) = &mut self.tangential.control {
+            *force = force.map(|force| force / modulus);
+        }
+        self
     }
 }
 
@@ -623,8 +570,9 @@ fn work_between(
     if pressed.is_empty() {
         return Ok(0.0);
     }
-    let mut change = after.cells.carry(&before.cells, &before.pressure);
-    for (change, now) in change.iter_mut().zip(&after.pressure) {
+    let [before, after] = [before, after].map(|track| &track.pressures);
+    let mut change = after.cells.carry(&before.cells, &before.elastic);
+    for (change, now) in change.iter_mut().zip(&after.elastic) {
         *change = now - *change;
     }
     let (mut moved, operators) = (Vec::new(), &mut surface.problem.operators);
@@ -675,30 +623,6 @@ impl PreparedSurface {
         }
         self.crept = crept;
         Ok(())
-    }
-}
-
-impl LastState {
-    /// The mean of two contacts, at the larger of both approaches.
-    fn halfway_to(&self, other: &Self) -> Self {
-        let contact = self.contact.union(&other.contact);
-        let mut p = contact.carry(&self.contact, &self.p);
-        contact.add_carried(&other.contact, &other.p, &mut p);
-        for p in &mut p {
-            *p *= 0.5;
-        }
-        let (force, d) = (0.5 * (self.force + other.force), self.d.max(other.d));
-        Self { contact, p, d, force, tangent: None }
-    }
-
-    /// The same contact of a body with another modulus.
-    fn scaled(&self, factor: f64) -> Self {
-        Self {
-            p: self.p.iter().map(|p| p * factor).collect(),
-            force: self.force * factor,
-            tangent: None,
-            ..self.clone()
-        }
     }
 }
 

@@ -1,3 +1,4 @@
+use super::step_law::ArmStep;
 use super::*;
 use crate::kernel::PeriodicKernel;
 use crate::model::options::Bem3d;
@@ -77,16 +78,16 @@ fn areas_of_another_program() {
 
 /// The energy of the springs of a history over E*, and the power that the dashpots take, by sums over pairs.
 fn energies(surface: &PreparedSurface, spectrum: &RelaxationSpectrum, track: &ViscousTrack) -> [f64; 2] {
-    let places: Vec<_> = track.cells.places().collect();
+    let places: Vec<_> = track.pressures.cells.places().collect();
     let table = surface.problem.operators.table();
     let product = |v: &[f64]| -> f64 {
         let pairs =
             places.iter().zip(v).flat_map(|(a, p)| places.iter().zip(v).map(move |(b, q)| (a, p, b, q)));
         pairs.map(|(a, p, b, q)| p * q * table.lag(a.0.abs_diff(b.0), a.1.abs_diff(b.1))[0]).sum()
     };
-    let mut stored = 0.5 * spectrum.equilibrium * product(&track.pressure);
+    let mut stored = 0.5 * spectrum.equilibrium * product(&track.pressures.elastic);
     let mut power = 0.0;
-    for (arm, q) in spectrum.arms.iter().zip(&track.arms) {
+    for (arm, q) in spectrum.arms.iter().zip(&track.pressures.arms) {
         let of_arm = arm.weight * product(q);
         stored += 0.5 * of_arm;
         power += arm.rate * of_arm;
