@@ -148,7 +148,7 @@ fn cycle(law: AdhesionLaw, mu: f64, cells: usize, half: f64, steps: usize) -> Re
     let (mut before, mut lost, mut jumped) = (None, 0.0, 0.0);
     for (i, approach) in path.enumerate() {
         let state = history.advance(Step::new(i as f64, Load::approach(approach * approach_unit)))?;
-        let energy = state.adhesive.map_or(0.0, |adhesive| adhesive.energy);
+        let energy = state.adhesive.and_then(|adhesive| adhesive.energy).unwrap_or(0.0);
         let now = (approach * approach_unit, state.force, energy, state.area.unwrap_or(0.0) > 0.0);
         if let Some((d, force, stored, touched)) = before {
             let done = 0.5 * (force + now.1) * (now.0 - d);
@@ -307,7 +307,12 @@ fn row(what: &str, pressure: f64, state: &ContactState, scene: &Scene, start: In
 
 fn line(state: &ContactState, start: Instant) -> String {
     let adhesive = state.adhesive.map_or("elastic 1 0".into(), |adhesive| {
-        format!("{} {:.4e} {:.8e}", adhesive.branch.as_str(), adhesive.stability, adhesive.energy)
+        format!(
+            "{} {:.4e} {:.8e}",
+            adhesive.branch.as_str(),
+            adhesive.stability,
+            adhesive.energy.unwrap_or(0.0)
+        )
     });
     format!(
         "{:.6e} {adhesive} {} {} {} {:.3} [{}] {}",

@@ -203,7 +203,11 @@ impl PartialSlipBench {
         let load = FrictionLoad { law: contact_model::FrictionLaw::coulomb(coefficient), control };
         let guess = guess.as_ref().map(|q| (&*cells, &q[..]));
         let state = friction
-            .advance(SlipStep { before: &SlipMemory::default(), contact, load, guess, relaxes: false }, limits, &never)
+            .advance(
+                SlipStep { before: &SlipMemory::default(), contact, load, guess, relaxes: false },
+                limits,
+                &never,
+            )
             .ok()?;
         let [after, _] = friction.work();
         let k =

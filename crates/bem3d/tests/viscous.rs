@@ -308,7 +308,7 @@ fn what_has_no_answer_is_refused() {
     assert!(refused(&stiff, force).contains("stiffness of a viscoelastic body"));
     let mut sticky = scene(ball(), Boundary::Free, &SOLID);
     sticky.effects.adhesion = Adhesion::ShortRange { work: 1.0 };
-    assert!(refused(&sticky, force).contains("a history too"), "{}", refused(&sticky, force));
+    assert!(refused(&sticky, force).contains("give the adhesion a range"), "{}", refused(&sticky, force));
     let mut coated = scene(ball(), Boundary::Free, &SOLID);
     let base = LayerBase::HalfSpace { young: 1.0, poisson: 0.3 };
     coated.effects.layer = Some(Layer { thickness: 0.1, young: MODULUS * 0.91, poisson: 0.3, base });
@@ -422,7 +422,7 @@ fn steps_end_where_the_solver_decides() {
         .map(|time| contact.advance(Step::new(time, Load::force(0.002))).unwrap())
         .map(|state| state.viscoelastic.unwrap().time_steps)
         .sum();
-    assert!(steps < 2000, "{steps}");
+    assert!(steps < 3000, "{steps}");
 }
 
 /// With periodic boundaries the load works along the fall of the mean gap, up and down; a profile has no zero.
@@ -459,8 +459,7 @@ fn sliding(rheology: &Rheology, friction: f64) -> Scene {
     let mut scene = Scene::of_pair(ball(), Pair { first: Body::Rigid, second: body }).unwrap();
     scene.effects.rheology = *rheology;
     scene.effects.friction = Friction::coulomb(friction);
-    scene.outputs =
-        Outputs { area: true, stick_area: true, traction: true, ..Outputs::default() };
+    scene.outputs = Outputs { area: true, stick_area: true, traction: true, ..Outputs::default() };
     scene.outputs.pressure = true;
     scene
 }
@@ -564,6 +563,159 @@ fn friction_goes_on_from_a_memory() {
         other.recall(&memory).unwrap();
         for (&(time, load), expected) in steps[cut..].iter().zip(&whole[cut..]) {
             assert_eq!(other.advance(Step::new(time, load)).unwrap(), *expected, "{cut} {time}");
+        }
+    }
+}
+
+/// A ball that attracts: its range is some cells long, and the contact is one of tens of cells.
+fn sticky(rheology: &Rheology, law: AdhesionLaw) -> Scene {
+    let mut scene = scene(ball(), Boundary::Free, rheology);
+    scene.effects.adhesion = Adhesion::FiniteRange { work: 0.01, range: 0.02, law };
+    scene
+}
+
+/// Pressures displace as the integral of the modulus over the past says, by sums over pairs of cells; beside the
+/// contact they are the attraction of the gap. The largest difference from the integral, relative to the largest
+/// displacement, with this number of states a unit of time.
+fn beside_the_integral(law: AdhesionLaw, states: u32) -> f64 {
+    const SIDE: usize = 16;
+    let model = Bem3d { cells: SIDE, tolerance: 1e-9, time_tolerance: 1.0, ..Bem3d::DEFAULT };
+    let mut scene = sticky(&SOLID, law);
+    scene.surface = Surface::Sphere { radius: 1.0, size: 0.4.into() };
+    (scene.outputs.pressure, scene.outputs.displacement, scene.outputs.gap) = (true, true, true);
+    // In, a rest and out.
+    let at = |time: f64| 0.02 + 0.03 * time.min(1.0) - 0.03 * (time - 2.0).max(0.0);
+    let times = (1..=3 * states).map(|k| f64::from(k) / f64::from(states));
+    let steps: Vec<_> = times.map(|time| (time, Load::approach(at(time)))).collect();
+    let found = history(&model, &scene, &steps);
+    let closed: Vec<_> = found.iter().map(|state| state.report.contact_cells.unwrap()).collect();
+    assert!(
+        closed[states as usize - 1] > closed[0] && closed[closed.len() - 1] < closed[2 * states as usize - 1]
+    );
+    let place = |i: usize| (i % SIDE, i / SIDE);
+    let influence = |i: usize, j: usize| {
+        let ((x, y), (other_x, other_y)) = (place(i), place(j));
+        love::influence_of_rectangle(x.abs_diff(other_x), y.abs_diff(other_y), 1.0)
+    };
+    let unit = 0.4 / SIDE as f64 / (std::f64::consts::PI * MODULUS);
+    let (mut arm, mut before, mut worst) = (vec![0.0; SIDE * SIDE], vec![0.0; SIDE * SIDE], 0.0_f64);
+    let angle = 1.0 / f64::from(states) / ARM.time;
+    for state in &found {
+        let fields = state.fields.as_ref().unwrap();
+        let [p, u, g] = [&fields.pressure, &fields.displacement, &fields.gap]
+            .map(|field| field.as_ref().unwrap().values());
+        for ((q, u), before) in arm.iter_mut().zip(u).zip(&before) {
+            *q = (-angle).exp() * *q - (-angle).exp_m1() / angle * (u - before);
+        }
+        before = u.to_vec();
+        let largest = u.iter().zip(&arm).fold(0.0, |most: f64, (u, q)| most.max((u + 3.0 * q).abs()));
+        for i in 0..SIDE * SIDE {
+            let pressed = (0..SIDE * SIDE).map(|j| influence(i, j) * p[j]).sum::<f64>() * unit;
+            worst = worst.max((pressed - u[i] - 3.0 * arm[i]).abs() / largest);
+            let attraction = match law {
+                AdhesionLaw::Dugdale if g[i] < 0.02 => 0.5,
+                AdhesionLaw::Dugdale => 0.0,
+                _ => 0.5 * (-g[i] / 0.02).exp(),
+            };
+            assert!(g[i] < 1e-6 || (p[i] + attraction).abs() < 1e-5, "{i}: {} {attraction}", p[i]);
+        }
+    }
+    worst
+}
+
+#[test]
+fn an_attraction_has_a_history_too() {
+    for law in [AdhesionLaw::Exponential, AdhesionLaw::Dugdale] {
+        let [coarse, fine] = [10, 40].map(|states| beside_the_integral(law, states));
+        println!("{law:?} {coarse} {fine}");
+        assert!(fine < 2e-3 && fine < 0.4 * coarse, "{law:?}: {coarse} {fine}");
+    }
+}
+
+/// In no time the body is glassy, and at rest it becomes the relaxed one.
+#[test]
+fn both_limits_of_adhesion_are_elastic() {
+    let scene = sticky(&SOLID, AdhesionLaw::Exponential);
+    let load = Load::approach(0.03);
+    let states = history(&MODEL, &scene, &[(0.0, load), (400.0, load)]);
+    for (state, factor) in states.iter().zip([4.0, 1.0]) {
+        let mut elastic = scene.clone();
+        elastic.effects.rheology = Rheology::Elastic;
+        elastic.contact_modulus *= factor;
+        let expected = MODEL.prepare(&elastic, 3).unwrap().solve(load).unwrap();
+        assert_relative_eq!(state.force, expected.force, max_relative = 1e-4);
+        let (cells, expected) = (state.report.contact_cells.unwrap(), expected.report.contact_cells.unwrap());
+        assert!(cells.abs_diff(expected) <= 2, "{cells} {expected}");
+        let adhesive = state.adhesive.unwrap();
+        assert!(adhesive.stability > 0.0 && adhesive.energy.is_none());
+        assert_eq!(state.viscoelastic.unwrap().work, None);
+    }
+}
+
+/// A pull that a contact bears for some time, and not for long: it comes off on the way.
+#[test]
+fn what_is_drawn_off_fast_holds_more() {
+    let scene = sticky(&SOLID, AdhesionLaw::Exponential);
+    let largest = |speed: f64| {
+        let mut contact = MODEL.prepare(&scene, 3).unwrap();
+        // Pressed for long, so that the contact is that of the relaxed body.
+        contact.advance(Step::new(0.0, Load::approach(0.04))).unwrap();
+        contact.advance(Step::new(100.0, Load::approach(0.04))).unwrap();
+        (1..=40)
+            .map(|k| {
+                let way = 0.004 * f64::from(k);
+                let step = Step::new(100.0 + way / speed, Load::approach(0.04 - way));
+                -contact.advance(step).unwrap().force
+            })
+            .fold(0.0, f64::max)
+    };
+    let [slow, fast] = [1e-4, 1.0].map(largest);
+    assert!(fast > 1.1 * slow && slow > 0.0, "{slow} {fast}");
+    // The pull of the relaxed body is the least that holds for ever.
+    let mut contact = MODEL.prepare(&scene, 3).unwrap();
+    let held = |time, force| Step::new(time, Load::force(force));
+    contact.advance(held(0.0, 0.05)).unwrap();
+    contact.advance(held(100.0, 0.05)).unwrap();
+    let between = 0.5 * (slow + fast);
+    let state = contact.advance(held(100.01, -between)).unwrap();
+    assert!(state.force < 0.0 && state.area.unwrap() > 0.0);
+    let Err(Error::NotConverged { best }) = contact.advance(held(200.0, -between)) else {
+        panic!("it holds")
+    };
+    assert_eq!(best.report.status, Status::PulledOff);
+    assert_relative_eq!(best.force, -between, max_relative = 1e-6);
+    assert_eq!(best.time, Some(100.01));
+    // The path is where it was.
+    assert!(contact.advance(held(100.02, 0.0)).unwrap().area.unwrap() > 0.0);
+}
+
+/// A path with adhesion goes on to the same bits from its memory, with a hardness and friction too.
+#[test]
+fn adhesion_goes_on_from_a_memory() {
+    let body = Body::Elastic { young: 0.75 * MODULUS, poisson: 0.5 };
+    let mut rubber = Scene::of_pair(ball(), Pair { first: Body::Rigid, second: body }).unwrap();
+    let of = sticky(&SOLID, AdhesionLaw::Dugdale);
+    (rubber.effects, rubber.outputs) = (of.effects, of.outputs);
+    let mut hard = rubber.clone();
+    hard.effects.hardness = Hardness::Limit { pressure: 1.0 };
+    rubber.effects.friction = Friction::coulomb(0.3);
+    for scene in [rubber, hard] {
+        let steps =
+            [(0.0, 0.02), (1.0, 0.05), (2.0, 0.05), (3.0, 0.01), (3.0, 0.02), (8.0, -0.01), (9.0, -0.3)];
+        let loads = steps.map(|(time, d)| (time, Load::approach(d)));
+        let whole = history(&MODEL, &scene, &loads);
+        assert_eq!(whole[6].area, Some(0.0));
+        for cut in [1, 3, 5, 6] {
+            let mut contact = MODEL.prepare(&scene, 3).unwrap();
+            for &(time, load) in &loads[..cut] {
+                contact.advance(Step::new(time, load)).unwrap();
+            }
+            let memory = contact.memory().unwrap().unwrap();
+            let mut other = MODEL.prepare(&scene, 3).unwrap();
+            other.recall(&memory).unwrap();
+            for (&(time, load), expected) in loads[cut..].iter().zip(&whole[cut..]) {
+                assert_eq!(other.advance(Step::new(time, load)).unwrap(), *expected, "{cut} {time}");
+            }
         }
     }
 }

@@ -503,8 +503,8 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
     "branch" "branch" "" Word; Effect("adhesion"); "whether the bodies were brought nearer or drawn apart"
         { average: Average::No, drawn: false }
         => |s, _| s.adhesive.map(|a| a.branch.as_str()).into();
-    "energy" "energy" "" Si("J"); Effect("adhesion"); "elastic energy less the work of adhesion done"
-        => |s, _| s.adhesive.map(|a| a.energy).into();
+    "energy" "energy" "" Si("J"); Effect("adhesion"); "elastic energy less the work of adhesion done, of elastic bodies"
+        => |s, _| s.adhesive.and_then(|a| a.energy).into();
     "stability" "stability" "" One; Effect("adhesion");
         "a minimum of the energy where > 0: its least curvature over that without adhesion"
         { drawn: false }

@@ -313,9 +313,11 @@ impl PlasticState {
 pub struct AdhesiveState {
     /// Branch on which the state lies.
     pub branch: Branch,
-    /// Elastic energy less the work done by the attraction: 0 for bodies far apart.
-    pub energy: f64,
-    /// Stability of the state, dimensionless; > 0 at a minimum of the energy.
+    /// Elastic energy less the work done by the attraction: 0 for bodies far apart. `None` of a viscoelastic body,
+    /// whose arms hold energies of their own.
+    pub energy: Option<f64>,
+    /// Stability of the state, dimensionless; > 0 at a minimum of the energy, of a viscoelastic body at one of the
+    /// step of time that led to the state.
     ///
     /// It is the smallest curvature of the energy, divided by the curvature without adhesion. With Dugdale's
     /// law, states are stable between the jumps of single cells; there it is the smallest difference between
@@ -326,8 +328,8 @@ pub struct AdhesiveState {
 
 impl AdhesiveState {
     /// A state on this branch.
-    pub fn new(branch: Branch, energy: f64, stability: f64) -> Self {
-        Self { branch, energy, stability }
+    pub fn new(branch: Branch, energy: impl Into<Option<f64>>, stability: f64) -> Self {
+        Self { branch, energy: energy.into(), stability }
     }
 }
 
@@ -352,7 +354,7 @@ pub struct ViscoelasticState {
     pub time_steps: usize,
     /// Work of the normal load since the first step: what the body holds, and what has been dissipated in it. With
     /// periodic boundaries the load works along the fall of the mean gap. `None` where displacements have no zero, in
-    /// contacts that go on along a line.
+    /// contacts that go on along a line, and with adhesion, whose attraction works too.
     pub work: Option<f64>,
 }
 

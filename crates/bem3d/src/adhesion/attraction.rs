@@ -80,6 +80,11 @@ impl Attraction {
         Self { law, neighbours: None, strength: 0.0, inverse: None }
     }
 
+    /// The attraction of a finite range in the units of a body whose modulus is this many times as large.
+    pub fn over(&self, modulus: f64) -> Self {
+        Self::of(AttractionLaw { peak: self.law.peak / modulus, ..self.law })
+    }
+
     /// The attraction of short range on a grid. `work` is the work of adhesion over `pi E*` times the height.
     pub fn short(work: f64, grid: Grid, boundary: Boundary) -> Self {
         let (x, y) = grid.cell();

@@ -35,7 +35,7 @@ impl AdhesiveControl {
 }
 
 /// A state: contact pressure, attraction and gap on the cells within reach.
-#[derive(Debug, Clone, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Equilibrium {
     /// Approach.
     pub d: f64,
@@ -109,6 +109,18 @@ impl Equilibrium {
     /// The contact set.
     pub fn contact(&self) -> CellSet {
         self.cells.filter(&self.pressure, |p| p > 0.0)
+    }
+
+    /// The same state of a body with another modulus, on cells that are looked up anew.
+    pub fn scaled(&self, factor: f64) -> Self {
+        let scaled = |values: &[f64]| values.iter().map(|value| value * factor).collect();
+        Self {
+            reach: f64::NEG_INFINITY,
+            pressure: scaled(&self.pressure),
+            attraction: scaled(&self.attraction),
+            lawful: scaled(&self.lawful),
+            ..self.clone()
+        }
     }
 
     /// Takes other cells, those below `reach`; values are carried over.

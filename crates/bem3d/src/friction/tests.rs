@@ -304,7 +304,13 @@ fn a_force_is_held_up_to_gross_slip() {
     }
     let beyond = TangentialControl::Force([0.0, -1.001 * most]);
     let refused = friction(grid, Boundary::Free, 0.43).advance(
-        SlipStep { before: &SlipMemory::default(), contact: all.cells(), load: load(beyond), guess: None, relaxes: false },
+        SlipStep {
+            before: &SlipMemory::default(),
+            contact: all.cells(),
+            load: load(beyond),
+            guess: None,
+            relaxes: false,
+        },
         LIMITS,
         &never,
     );
@@ -385,7 +391,13 @@ fn without_contact_bodies_slide_and_touch_where_they_lie() {
         &[0.0; 3],
         0.0,
     );
-    let again = SlipStep { before: &state.memory, contact: all.cells(), load: load(control), guess: None, relaxes: false };
+    let again = SlipStep {
+        before: &state.memory,
+        contact: all.cells(),
+        load: load(control),
+        guess: None,
+        relaxes: false,
+    };
     let again = solver.advance(again, LIMITS, &never).unwrap();
     assert!(largest(&again.memory.traction) < 1e-10 * all.friction(), "touched where it lies");
 }
@@ -431,7 +443,13 @@ fn stiffnesses_are_difference_quotients() {
         let advance = |solver: &mut FrictionSolver, before: &SlipMemory, control| {
             solver
                 .advance(
-                    SlipStep { before, contact: all.cells(), load: load(control), guess: None, relaxes: false },
+                    SlipStep {
+                        before,
+                        contact: all.cells(),
+                        load: load(control),
+                        guess: None,
+                        relaxes: false,
+                    },
                     limits,
                     &never,
                 )
@@ -575,7 +593,13 @@ fn the_error_of_a_stiffness_holds_its_true_error() {
                 let begin = SlipMemory::default();
                 let state = solver
                     .advance(
-                        SlipStep { before: &begin, contact: all.cells(), load: load(control), guess: None, relaxes: false },
+                        SlipStep {
+                            before: &begin,
+                            contact: all.cells(),
+                            load: load(control),
+                            guess: None,
+                            relaxes: false,
+                        },
                         limits,
                         &never,
                     )

@@ -37,8 +37,10 @@ const ON_BRANCH: f64 = 1e-3;
 /// The attraction of a surface, and where it is on its path.
 #[derive(Debug)]
 pub(super) struct AdhesivePath {
-    attraction: Attraction,
+    pub(super) attraction: Attraction,
     pub(super) last: Option<Last>,
+    /// Whether gaps move while the load rests, as those of a body with a history do.
+    relaxes: bool,
 }
 
 /// A surface with its attraction.
@@ -46,10 +48,11 @@ pub(super) struct AdhesiveContact<'a> {
     pub(super) surface: &'a mut PreparedSurface,
     pub(super) attraction: &'a Attraction,
     last: &'a mut Option<Last>,
+    relaxes: bool,
 }
 
 /// The end of the last step.
-#[derive(Debug, Clone, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub(super) struct Last {
     pub(super) equilibrium: Equilibrium,
     control: AdhesiveControl,
@@ -81,20 +84,37 @@ impl AdhesivePath {
     /// As [`attraction`].
     pub(super) fn of(surface: &mut PreparedSurface, adhesion: Adhesion) -> Result<Option<Self>> {
         let Some(attraction) = attraction(surface, adhesion)? else { return Ok(None) };
-        // The solid bears the net pressure: a cell in contact, which is attracted by the peak of the law, touches
-        // with as much more. Where it flows its gap is zero or less, so that this is the bound of each cell.
-        if let Some(hardness) = surface.hardness {
-            surface.problem.bounds = Bounds::UpTo(hardness + attraction.law.peak);
-        }
+        surface.problem.bounds = bounds(surface.hardness, Some(&attraction));
         if let (true, Some(sliding)) = (attraction.has_shares(), &mut surface.sliding) {
             sliding.act_on_shares();
         }
-        Ok(Some(Self { attraction, last: None }))
+        Ok(Some(Self { attraction, last: None, relaxes: false }))
+    }
+
+    /// A step of a history under this attraction, from the end of the one before.
+    pub(super) fn of_step(attraction: Attraction, last: Option<Last>) -> Self {
+        Self { attraction, last, relaxes: true }
     }
 
     /// The contact of its surface.
     pub(super) fn on<'a>(&'a mut self, surface: &'a mut PreparedSurface) -> AdhesiveContact<'a> {
-        AdhesiveContact { surface, attraction: &self.attraction, last: &mut self.last }
+        let Self { attraction, last, relaxes } = self;
+        AdhesiveContact { surface, attraction, last, relaxes: *relaxes }
+    }
+}
+
+impl Last {
+    /// The same state of a body with another modulus.
+    pub(super) fn scaled(&self, factor: f64) -> Self {
+        Self { equilibrium: self.equilibrium.scaled(factor), ..self.clone() }
+    }
+
+    /// The error of a load that pulls the bodies off each other, with this state as the last stable one.
+    pub(super) fn pulled_off(&self, strategy: String) -> Error {
+        let mut best = self.state.clone();
+        best.report.status = Status::PulledOff;
+        best.report.strategy = strategy;
+        Error::NotConverged { best: Box::new(best) }
     }
 }
 
@@ -258,7 +278,7 @@ impl AdhesiveContact<'_> {
                 Err((Ended::PulledOff | Ended::Interrupted, _)) => return Err(self.pulled_off(control)?),
                 Err((Ended::Status(status), equilibrium)) => (equilibrium, status),
             };
-            let left = last.is_some_and(|last| self.left_branch(last, &equilibrium, rises));
+            let left = !self.relaxes && last.is_some_and(|last| self.left_branch(last, &equilibrium, rises));
             let mut response = Response::default();
             let sound = status == Status::Converged && !left;
             if sound || !again {
@@ -297,11 +317,8 @@ impl AdhesiveContact<'_> {
         let value = self.surface.nondimensional.force(PI * force.abs())?.copysign(force);
         Ok(match &*self.last {
             Some(last) => {
-                let mut best = last.state.clone();
-                best.report.status = Status::PulledOff;
-                best.report.strategy =
-                    format!("pull-off before the force {}; the last stable state", number(rounded(value, 6)));
-                Error::NotConverged { best: Box::new(best) }
+                let before = number(rounded(value, 6));
+                last.pulled_off(format!("pull-off before the force {before}; the last stable state"))
             }
             None => Error::OutOfRange { name: "force".into(), value, min: 0.0, max: f64::INFINITY },
         })
@@ -330,6 +347,7 @@ impl AdhesiveContact<'_> {
         let stored = PI * energy(&self.surface.problem, self.attraction, &equilibrium);
         // A force times a length.
         let stored = stored.signum() * units.approach(units.force(stored.abs())?)?;
+        let stored = (!self.relaxes).then_some(stored);
         let residuals = equilibrium.residuals;
         let net = equilibrium.net();
         let normal = NormalSolution {
@@ -416,6 +434,15 @@ impl AdhesiveContact<'_> {
         };
         (a - b).abs() <= self.surface.options.tolerance * scale
     }
+}
+
+/// The bounds of the contact pressure of each cell.
+///
+/// The solid bears the net pressure: a cell in contact, which is attracted by the peak of the law, touches with as
+/// much more. Where it flows its gap is zero or less, so that this is the bound of each cell.
+pub(super) fn bounds(hardness: Option<f64>, attraction: Option<&Attraction>) -> Bounds {
+    let peak = attraction.map_or(0.0, |attraction| attraction.law.peak);
+    hardness.map_or(Bounds::Unlimited, |hardness| Bounds::UpTo(hardness + peak))
 }
 
 /// The attraction in the units of the surface, where there is any: tractions over pi E* times the height over

@@ -47,7 +47,7 @@ impl PreparedBem3d {
     ) -> Result<Self> {
         let mut surface = PreparedSurface::of_map(*model, scene, map, numerics)?;
         let adhesion = AdhesivePath::of(&mut surface, scene.effects.adhesion)?;
-        let viscous = ViscousHistory::of(&surface, scene)?;
+        let viscous = ViscousHistory::of(&surface, adhesion.as_ref(), scene)?;
         let place = PlaceInLoads { loads: LoadSequence::Single, solved: None, time: 0.0 };
         Ok(Self { surface, adhesion, viscous, place })
     }
@@ -108,8 +108,8 @@ impl PreparedBem3d {
             sliding.begin();
         }
         let state = match (&mut self.adhesion, &mut self.viscous) {
-            (Some(adhesion), _) => adhesion.on(&mut self.surface).at(load, loads, stop),
-            (None, Some(history)) => {
+            (Some(adhesion), None) => adhesion.on(&mut self.surface).at(load, loads, stop),
+            (_, Some(history)) => {
                 if loads == LoadSequence::Single {
                     history.begin(&mut self.surface);
                 }

@@ -97,7 +97,8 @@ impl PreparedSurface {
             }
             limits.tolerance = limits.tolerance.min(state.duality_gap) * further(tolerance / error);
             let guess = Some((contact.cells, &state.memory.traction[..]));
-            let Ok(next) = friction.advance(SlipStep { before, contact, load, guess, relaxes }, limits, stop) else {
+            let Ok(next) = friction.advance(SlipStep { before, contact, load, guess, relaxes }, limits, stop)
+            else {
                 break;
             };
             if next.duality_gap >= state.duality_gap {

@@ -224,9 +224,9 @@ const NOT_COMBINED: &[NotCombined] = &[
         reason: "how tangential tractions displace a layer is not known here",
     },
     NotCombined {
-        effects: [RHEOLOGY, ADHESION],
-        reason: "not solved, as the attraction would have a history too; at an edge that opens or closes with a speed the work of \
-                 adhesion depends on its range",
+        effects: [RHEOLOGY, &[Effect::ShortRangeAdhesion]],
+        reason: "at an edge that opens or closes with a speed the work of adhesion depends on the range of the attraction, which \
+                 this limit does not have; give the adhesion a range",
     },
     NotCombined {
         effects: [RHEOLOGY, &[Effect::FullCoupling]],

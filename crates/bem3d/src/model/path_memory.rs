@@ -139,7 +139,7 @@ impl LastState {
 }
 
 impl Last {
-    fn fits(&self, grid: Grid) -> bool {
+    pub(super) fn fits(&self, grid: Grid) -> bool {
         let of = &self.equilibrium;
         of.cells.is_on(grid)
             && are_of(&of.cells, 1, &[&of.pressure, &of.attraction, &of.gap])

@@ -17,19 +17,21 @@ mod track;
 
 use self::step_law::StepLaw;
 use self::track::{TrackEnd, ViscousTrack};
-use super::load::{ScaledLoad, ScaledNormal};
+use super::adhesive::{AdhesivePath, Last, bounds};
+use super::load::{LoadSequence, ScaledLoad, ScaledNormal};
 use super::memory::{IndentationMemory, Indented};
 use super::options::NAME;
 use super::prepared::PreparedSurface;
 use super::sliding::over;
-use crate::active_set::{Bounds, Candidates, LastState};
+use crate::active_set::{Candidates, LastState};
+use crate::adhesion::Attraction;
 use crate::friction::TangentialControl;
 use crate::geometry::{CellSet, Grid};
 use crate::law::length;
 use crate::real::{sum_of_pairs, update};
 use contact_model::{
-    Conductance, ContactState, Coupling, Error, FrictionLaw, Interrupted, Nondimensionalisation, Outputs, RelaxationSpectrum,
-    Result, Rheology, Scene, Stop, ViscoelasticState,
+    Conductance, ContactState, Coupling, Error, FrictionLaw, Interrupted, Nondimensionalisation, Outputs,
+    RelaxationSpectrum, Result, Rheology, Scene, Status, Stop, ViscoelasticState,
 };
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -37,9 +39,13 @@ use std::sync::Arc;
 
 /// A step of time is cut to no less than this share of the piece of the path in which it lies.
 const SHORTEST_STEP: f64 = 1e-14;
-/// A step whose error is more than this multiple of that of the step of twice its length or more, which was cut, is
-/// as accurate as the solver is: shorter ones do not help.
+/// A pull that comes off the surface in a step of this share of the piece of the path comes off.
+const SHORTEST_PULL: f64 = 1e-4;
+/// A step that is cut has no effect where the error of the shorter one is more than this multiple of its own. Once
+/// [`USELESS_CUTS`] in a row have none, the step is as accurate as the solver is.
 const NOISE: f64 = 0.7;
+/// A step much longer than the times of the material may have a smaller error than a shorter one by accident.
+const USELESS_CUTS: usize = 3;
 /// The next step is this much shorter than the one whose error would be what is allowed.
 const CAUTION: f64 = 0.8;
 /// The next step over the last one, at least and at most.
@@ -73,6 +79,9 @@ impl HistoryMemory {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 struct LoadResponse {
     force: f64,
+    /// The force with which an elastic body would be displaced as much. A step that is much longer than the times of
+    /// the material can have the right force by accident, but then not this one.
+    elastic_force: f64,
     /// The approach; of a periodic surface by how much the mean gap has fallen from that of the first touch.
     approach: f64,
     tangential_force: [f64; 2],
@@ -91,6 +100,8 @@ pub(super) struct ViscousHistory {
     hardness: Option<f64>,
     /// The law of friction, in the units of the modulus E*.
     friction: Option<FrictionLaw>,
+    /// The attraction, in the units of the modulus E*.
+    attraction: Option<Attraction>,
     /// Whether a mean gap takes the place of the approach.
     periodic: bool,
     /// Largest error that one step of time adds, relative.
@@ -110,6 +121,30 @@ struct TimeStep<'a> {
     guess: Option<&'a LastState>,
 }
 
+/// A step of time, whole in one history and in halves in the other.
+#[derive(Clone, Copy)]
+struct StepPair {
+    duration: f64,
+    middle: ScaledLoad,
+    end: ScaledLoad,
+    /// The outputs of the state at its end, where it is one that was asked for.
+    shown: Option<Outputs>,
+}
+
+/// The histories after it.
+struct StepResult {
+    state: ContactState,
+    /// After the first half.
+    first: ViscousTrack,
+    fine: ViscousTrack,
+    coarse: ViscousTrack,
+}
+
+/// Whether nothing holds the load of a step.
+fn is_pull_off<T>(found: &Result<T>) -> bool {
+    matches!(found, Err(Error::NotConverged { best }) if best.report.status == Status::PulledOff)
+}
+
 /// Refuses what a viscoelastic contact does not have.
 ///
 /// # Errors
@@ -123,10 +158,7 @@ pub(super) fn check_rheology(scene: &Scene) -> Result<()> {
     let refused = |what: &'static str| Err(Error::unsupported(NAME, what));
     let outputs = scene.outputs;
     let Outputs { stiffness, stiffness_fixed_area, conductance, .. } = outputs;
-    if stiffness
-        || stiffness_fixed_area
-        || outputs.tangential_stiffness
-        || outputs.tangential_stiffness_stuck
+    if stiffness || stiffness_fixed_area || outputs.tangential_stiffness || outputs.tangential_stiffness_stuck
     {
         return refused("the stiffness of a viscoelastic body (it depends on how fast one pushes)");
     }
@@ -151,7 +183,11 @@ impl ViscousHistory {
     ///
     /// # Errors
     /// As [`Rheology::spectrum`].
-    pub(super) fn of(surface: &PreparedSurface, scene: &Scene) -> Result<Option<Self>> {
+    pub(super) fn of(
+        surface: &PreparedSurface,
+        adhesion: Option<&AdhesivePath>,
+        scene: &Scene,
+    ) -> Result<Option<Self>> {
         let Some(spectrum) = scene.effects.rheology.spectrum(scene.contact_modulus)? else { return Ok(None) };
         let options = surface.options;
         let fine = ViscousTrack::new(surface, &spectrum);
@@ -161,6 +197,7 @@ impl ViscousHistory {
             virgin: (surface.problem.candidates.shared(), surface.mean),
             hardness: surface.hardness,
             friction: surface.sliding.as_ref().map(|sliding| sliding.law),
+            attraction: adhesion.map(|adhesion| adhesion.attraction.clone()),
             periodic: surface.is_periodic(),
             tolerance: options.time_tolerance,
             law: StepLaw::new,
@@ -188,6 +225,7 @@ impl ViscousHistory {
             && coarse.as_ref().is_none_or(|coarse| coarse.fits(grid, arms))
             && step.is_none_or(|step| step.is_finite() && step > 0.0)
             && largest.force.is_finite()
+            && largest.elastic_force.is_finite()
             && largest.approach.is_finite()
             && largest.tangential_force.into_iter().chain(largest.tangential_displacement).all(f64::is_finite)
             && work.is_finite()
@@ -206,7 +244,7 @@ impl ViscousHistory {
         surface.problem.coarser = None;
         (surface.mean, surface.last, surface.memory) = (*mean, None, None);
         surface.crept = Vec::new();
-        surface.limit_pressure(self.hardness);
+        surface.limit_pressure(self.hardness, self.attraction.as_ref());
         if let (Some(sliding), Some(law)) = (&mut surface.sliding, self.friction) {
             sliding.begin();
             sliding.law = law;
@@ -229,7 +267,8 @@ impl ViscousHistory {
         let guess = guess.or(track.last.as_ref());
         surface.last = guess.map(|last| last.scaled(law.modulus.recip()));
         if let Some(hardness) = self.hardness {
-            surface.limit_pressure(Some(hardness / law.modulus));
+            let attraction = self.attraction.as_ref().map(|attraction| attraction.over(law.modulus));
+            surface.limit_pressure(Some(hardness / law.modulus), attraction.as_ref());
             let mut memory = IndentationMemory::new(Arc::clone(&self.virgin.0));
             if let Some(indented) = &track.indented {
                 indented.restore(surface.problem.grid(), &mut memory);
@@ -264,7 +303,14 @@ impl ViscousHistory {
         let found = self.piece(surface, load, duration, stop);
         surface.outputs = outputs;
         self.rest(surface);
-        let (state, memory) = found?;
+        let pulled_off = is_pull_off(&found);
+        let (state, memory) = match (found, &self.memory.fine.adhesive) {
+            // Not that of a step on the way.
+            (Err(Error::NotConverged { best }), Some(last)) if pulled_off => {
+                return Err(last.pulled_off(best.report.strategy));
+            }
+            (found, _) => found?,
+        };
         self.memory = memory;
         Ok(state)
     }
@@ -304,8 +350,8 @@ impl ViscousHistory {
         // The largest response that any attempt has shown: what errors are relative to.
         let mut scale = memory.largest;
         let (mut done, mut step) = (0.0, memory.step.unwrap_or(duration));
-        // The error of the step that was cut last.
-        let mut cut = f64::INFINITY;
+        // The error of the step that was cut last, and how often that had no effect.
+        let (mut cut, mut useless) = (f64::INFINITY, 0);
         loop {
             let left = duration - done;
             // No short rest is left to the last step.
@@ -319,34 +365,30 @@ impl ViscousHistory {
             let ends = now >= left;
             let (middle, end) = ((done + 0.5 * now) / duration, (done + now) / duration);
             let end = if ends { 1.0 } else { end };
-            surface.outputs = hidden;
-            let coarse = memory.coarse.as_ref().unwrap_or(&memory.fine);
-            let whole = TimeStep { duration: now, load: at(end), guess: None };
-            let coarse = self.step(surface, coarse, whole, &mut work, stop)?.1;
-            // Both histories are close to each other: the end of one is the guess of the other.
-            let between = memory.fine.last.as_ref().zip(coarse.last.as_ref());
-            let between = between.map(|(start, end)| start.halfway_to(end));
-            let half = TimeStep { duration: 0.5 * now, load: at(middle), guess: between.as_ref() };
-            let (_, first) = self.step(surface, &memory.fine, half, &mut work, stop)?;
-            if ends {
-                surface.outputs = wanted;
+            let pair =
+                StepPair { duration: now, middle: at(middle), end: at(end), shown: ends.then_some(wanted) };
+            let found = self.both(surface, &memory, pair, &mut work, stop);
+            if is_pull_off(&found) && now > SHORTEST_PULL * duration {
+                // Held by what has not relaxed yet, or not at all.
+                step = 0.25 * now;
+                continue;
             }
-            let half = TimeStep { duration: 0.5 * now, load: at(end), guess: coarse.last.as_ref() };
-            let (state, fine) = self.step(surface, &first, half, &mut work, stop)?;
+            let StepResult { state, first, fine, coarse } = found?;
             let next =
                 HistoryMemory { fine, coarse: Some(coarse), step: None, largest: scale, work: memory.work };
             scale = self.largest(&next, scale);
             let added = (self.error(&next, load, scale) - self.error(&memory, load, scale)).abs();
             let ratio = (self.tolerance / added).powf(STEP_ORDER.recip()) * CAUTION;
             let better = now * ratio.clamp(STEP_CHANGE.0, STEP_CHANGE.1);
-            let is_noise = added > NOISE * cut;
+            useless = if added > NOISE * cut { useless + 1 } else { 0 };
+            let is_noise = useless >= USELESS_CUTS;
             if added > self.tolerance && now > SHORTEST_STEP * duration && !is_noise {
                 (step, cut) = (better.min(0.5 * now), added);
                 continue;
             }
             // Noise does not grow with the step.
             let better = if is_noise { STEP_CHANGE.1 * now } else { better };
-            cut = f64::INFINITY;
+            (cut, useless) = (f64::INFINITY, 0);
             work.steps += 1;
             done += now;
             // A step that the end of the piece cut short says little about the longest possible one.
@@ -366,6 +408,30 @@ impl ViscousHistory {
         }
     }
 
+    /// Both histories through one step of time.
+    fn both(
+        &self,
+        surface: &mut PreparedSurface,
+        memory: &HistoryMemory,
+        pair: StepPair,
+        work: &mut StepWork,
+        stop: Stop<'_>,
+    ) -> Result<StepResult> {
+        let StepPair { duration, middle, end, shown } = pair;
+        surface.outputs = Outputs::default();
+        let coarse = memory.coarse.as_ref().unwrap_or(&memory.fine);
+        let coarse = self.step(surface, coarse, TimeStep { duration, load: end, guess: None }, work, stop)?.1;
+        // Both histories are close to each other: the end of one is the guess of the other.
+        let between = memory.fine.last.as_ref().zip(coarse.last.as_ref());
+        let between = between.map(|(start, end)| start.halfway_to(end));
+        let half = TimeStep { duration: 0.5 * duration, load: middle, guess: between.as_ref() };
+        let first = self.step(surface, &memory.fine, half, work, stop)?.1;
+        surface.outputs = shown.unwrap_or_default();
+        let half = TimeStep { load: end, guess: coarse.last.as_ref(), ..half };
+        let (state, fine) = self.step(surface, &first, half, work, stop)?;
+        Ok(StepResult { state, first, fine, coarse })
+    }
+
     /// The largest of a response and of those at the ends of both histories, so that their difference is no more than
     /// twice as large.
     fn largest(&self, memory: &HistoryMemory, before: LoadResponse) -> LoadResponse {
@@ -374,22 +440,20 @@ impl ViscousHistory {
             let larger = |a: [f64; 2], b: [f64; 2]| if length(a) >= length(b) { a } else { b };
             LoadResponse {
                 force: largest.force.max(now.force.abs()),
+                elastic_force: largest.elastic_force.max(now.elastic_force.abs()),
                 approach: largest.approach.max(now.approach.abs()),
                 tangential_force: larger(largest.tangential_force, now.tangential_force),
-                tangential_displacement: larger(
-                    largest.tangential_displacement,
-                    now.tangential_displacement,
-                ),
+                tangential_displacement: larger(largest.tangential_displacement, now.tangential_displacement),
             }
         })
     }
 
     fn response(&self, track: &ViscousTrack) -> LoadResponse {
-        let TrackEnd { force, approach, mean_gap, tangential_force, tangential_displacement, .. } =
-            track.reached;
+        let TrackEnd { force, elastic_force, approach, mean_gap, .. } = track.reached;
+        let TrackEnd { tangential_force, tangential_displacement, .. } = track.reached;
         // The approach of a periodic surface contains the constant in its kernel.
         let approach = if self.periodic { self.virgin.1 - mean_gap } else { approach };
-        LoadResponse { force, approach, tangential_force, tangential_displacement }
+        LoadResponse { force, elastic_force, approach, tangential_force, tangential_displacement }
     }
 
     /// The difference between both histories in what the load leaves free, relative to the largest.
@@ -407,11 +471,13 @@ impl ViscousHistory {
                 apart(fine.tangential_displacement, coarse.tangential_displacement),
                 length(scale.tangential_displacement),
             ),
-            TangentialControl::Displacement(_) => {
-                relative(apart(fine.tangential_force, coarse.tangential_force), length(scale.tangential_force))
-            }
+            TangentialControl::Displacement(_) => relative(
+                apart(fine.tangential_force, coarse.tangential_force),
+                length(scale.tangential_force),
+            ),
         };
-        normal.max(tangential)
+        let elastic = relative(fine.elastic_force - coarse.elastic_force, scale.elastic_force);
+        normal.max(elastic).max(tangential)
     }
 
     /// The relative difference between both histories in what a tangential load leaves free; `None` without friction.
@@ -466,7 +532,7 @@ impl ViscousHistory {
         let of_load = of_load + state.plastic.map_or(0.0, |plastic| plastic.dissipated);
         // Without a zero of the displacements the work has none.
         let has_zero = surface.has_approach() || surface.is_periodic();
-        let of_load = has_zero.then_some(of_load);
+        let of_load = (has_zero && self.attraction.is_none()).then_some(of_load);
         let found = ViscoelasticState::new(errors, work.steps).with_work(of_load);
         Ok(state.with_viscoelastic(found.with_tangential_error(self.tangential_error(memory, load))))
     }
@@ -484,38 +550,89 @@ impl ViscousHistory {
         let modulus = law.modulus;
         let left = self.begin_step(surface, track, (&law, step.guess), stop)?;
         let load = step.load.over(modulus);
-        let state = surface.at(load, stop)?;
+        let (state, end) = self.solved(surface, track, (load, modulus), stop)?;
         work.add(&state);
-        let touches = state.force > 0.0;
-        let last = surface.last.take().filter(|_| touches);
-        let (contact, solved): (CellSet, &[f64]) =
-            last.as_ref().map_or((CellSet::default(), &[]), |last| (last.contact.clone(), &last.p));
+        let StepEnd { cells, net, contact, force, approach, adhesive, last } = end;
         let [of_pressures, of_tractions] = left;
-        let pressures = track.pressures.advanced(&law, &of_pressures, &contact, solved);
-        let sliding = surface.sliding.as_ref();
-        let slid = track.slid.as_ref().zip(sliding);
-        let slid = slid.map(|(slid, sliding)| slid.advanced(&law, &of_tractions, sliding));
-        let force = last.as_ref().map_or(0.0, |last| last.force);
-        let approach = match (&last, load.normal) {
-            (Some(last), _) => last.d,
-            (None, ScaledNormal::Approach(d)) => d,
-            (None, ScaledNormal::MeanGap(gap)) => surface.mean - gap,
-            (None, ScaledNormal::Force(_)) => surface.problem.candidates.range().first,
-        };
+        let slid = track.slid.as_ref().zip(surface.sliding.as_ref());
         let mean_gap = surface.mean_gap(surface.is_full(&contact), approach, force);
-        let cells = contact.len();
-        let reached =
-            TrackEnd { force: modulus * force, approach, mean_gap, cells, ..TrackEnd::default() };
+        let pressures = track.pressures.advanced(&law, &of_pressures, &cells, &net);
+        let reached = TrackEnd {
+            force: modulus * force,
+            elastic_force: pressures.elastic.iter().sum(),
+            approach,
+            mean_gap,
+            cells: contact.len(),
+            ..TrackEnd::default()
+        };
         let grid = surface.problem.grid();
         let next = ViscousTrack {
             pressures,
-            slid,
+            slid: slid.map(|(slid, sliding)| slid.advanced(&law, &of_tractions, sliding)),
+            adhesive: adhesive.map(|last| last.scaled(modulus)),
             last: last.map(|last| last.scaled(modulus)),
             indented: surface.memory.as_ref().map(|memory| Indented::of(grid, memory)),
             reached: reached.with_slip(modulus, surface.sliding.as_ref()),
         };
         Ok((state, next))
     }
+
+    /// The elastic contact at the end of a step, in the units of its modulus.
+    fn solved(
+        &self,
+        surface: &mut PreparedSurface,
+        track: &ViscousTrack,
+        (load, modulus): (ScaledLoad, f64),
+        stop: Stop<'_>,
+    ) -> Result<(ContactState, StepEnd)> {
+        if let Some(attraction) = &self.attraction {
+            let last = track.adhesive.as_ref().map(|last| last.scaled(modulus.recip()));
+            let mut path = AdhesivePath::of_step(attraction.over(modulus), last);
+            let state = path.on(surface).at(load, LoadSequence::Path, stop)?;
+            let equilibrium = path.last.as_ref().map(|last| last.equilibrium.clone()).unwrap_or_default();
+            let end = StepEnd {
+                net: equilibrium.net(),
+                contact: equilibrium.contact(),
+                force: equilibrium.force(),
+                approach: equilibrium.d,
+                cells: equilibrium.cells,
+                adhesive: path.last,
+                last: None,
+            };
+            return Ok((state, end));
+        }
+        let state = surface.at(load, stop)?;
+        let last = surface.last.take().filter(|_| state.force > 0.0);
+        let approach = match (&last, load.normal) {
+            (Some(last), _) => last.d,
+            (None, ScaledNormal::Approach(d)) => d,
+            (None, ScaledNormal::MeanGap(gap)) => surface.mean - gap,
+            (None, ScaledNormal::Force(_)) => surface.problem.candidates.range().first,
+        };
+        let contact = last.as_ref().map_or_else(CellSet::default, |last| last.contact.clone());
+        let end = StepEnd {
+            cells: contact.clone(),
+            contact,
+            net: last.as_ref().map_or_else(Vec::new, |last| last.p.clone()),
+            force: last.as_ref().map_or(0.0, |last| last.force),
+            approach,
+            adhesive: None,
+            last,
+        };
+        Ok((state, end))
+    }
+}
+
+/// The contact at the end of a step, in the units of its modulus.
+struct StepEnd {
+    /// The cells with a traction, and the net pressures on them.
+    cells: CellSet,
+    net: Vec<f64>,
+    contact: CellSet,
+    force: f64,
+    approach: f64,
+    adhesive: Option<Last>,
+    last: Option<LastState>,
 }
 
 impl ScaledLoad {
@@ -591,10 +708,10 @@ fn work_between(
 }
 
 impl PreparedSurface {
-    /// Bounds the pressure by a hardness in the present units.
-    fn limit_pressure(&mut self, hardness: Option<f64>) {
+    /// Bounds the pressure by a hardness and an attraction in the present units.
+    fn limit_pressure(&mut self, hardness: Option<f64>, attraction: Option<&Attraction>) {
         self.hardness = hardness;
-        self.problem.bounds = hardness.map_or(Bounds::Unlimited, Bounds::UpTo);
+        self.problem.bounds = bounds(hardness, attraction);
     }
 
     /// Displaces the heights by a pressure that a history has left.

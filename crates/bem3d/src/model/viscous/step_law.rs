@@ -106,7 +106,10 @@ impl TractionHistory {
         let sound = |values: &Vec<f64>| {
             values.len() == components * self.cells.len() && values.iter().all(|value| value.is_finite())
         };
-        self.cells.is_on(grid) && self.arms.len() == arms && sound(&self.elastic) && self.arms.iter().all(sound)
+        self.cells.is_on(grid)
+            && self.arms.len() == arms
+            && sound(&self.elastic)
+            && self.arms.iter().all(sound)
     }
 }
 

@@ -57,7 +57,7 @@ fn areas_of_another_program() {
     for (column, pressure, of_cells) in [(1, 2.0, 0.024), (2, 16.0, 0.0115)] {
         for periodic_kernel in PeriodicKernel::ALL {
             let mut surface = prepared(&Bem3d { periodic_kernel, ..Bem3d::DEFAULT }, &scene);
-            let mut history = ViscousHistory::of(&surface, &scene).unwrap().unwrap();
+            let mut history = ViscousHistory::of(&surface, None, &scene).unwrap().unwrap();
             history.law = euler;
             let load = surface.scaled_load(Load::force(pressure)).unwrap();
             let mut track = ViscousTrack::new(&surface, &history.spectrum);
@@ -105,7 +105,7 @@ fn work_is_stored_or_dissipated() {
     let model = Bem3d { cells: 16, tolerance: 1e-9, ..Bem3d::DEFAULT };
     let residual = |count: u32| {
         let mut surface = prepared(&model, &scene);
-        let history = ViscousHistory::of(&surface, &scene).unwrap().unwrap();
+        let history = ViscousHistory::of(&surface, None, &scene).unwrap().unwrap();
         let mut track = ViscousTrack::new(&surface, &history.spectrum);
         let mut work = StepWork::default();
         let (mut of_load, mut dissipated, mut last, mut power) = (0.0, 0.0, 0.0, 0.0);

@@ -5,6 +5,7 @@ use crate::active_set::LastState;
 use crate::friction::{SlipMemory, TangentialControl};
 use crate::geometry::Grid;
 use crate::law::total;
+use crate::model::adhesive::Last;
 use crate::model::load::{ScaledLoad, ScaledNormal};
 use crate::model::memory::Indented;
 use crate::model::prepared::PreparedSurface;
@@ -18,7 +19,9 @@ pub(super) struct ViscousTrack {
     pub pressures: TractionHistory,
     /// With friction.
     pub slid: Option<SlipHistory>,
-    /// The last contact, whose pressures are the true ones.
+    /// With adhesion, whose tractions are the true ones.
+    pub adhesive: Option<Last>,
+    /// The last contact without adhesion, whose pressures are the true ones.
     pub last: Option<LastState>,
     /// The indentation by a hardness.
     pub indented: Option<Indented>,
@@ -39,6 +42,8 @@ pub(super) struct SlipHistory {
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct TrackEnd {
     pub force: f64,
+    /// Sum of P: the force with which an elastic body would be displaced as much.
+    pub elastic_force: f64,
     pub approach: f64,
     pub mean_gap: f64,
     pub tangential_force: [f64; 2],
@@ -59,6 +64,7 @@ impl ViscousTrack {
                 slipped: SlipMemory::default(),
                 dissipated: 0.0,
             }),
+            adhesive: None,
             last: None,
             indented: None,
             reached: TrackEnd { mean_gap, ..TrackEnd::default() },
@@ -67,12 +73,14 @@ impl ViscousTrack {
 
     /// Whether its cells and numbers are those of a surface and a material.
     pub fn fits(&self, grid: Grid, arms: usize) -> bool {
-        let TrackEnd { force, approach, mean_gap, tangential_force, tangential_displacement, .. } = self.reached;
+        let TrackEnd { force, elastic_force, approach, mean_gap, .. } = self.reached;
+        let TrackEnd { tangential_force, tangential_displacement, .. } = self.reached;
         self.pressures.fits(grid, arms, 1)
             && self.slid.as_ref().is_none_or(|slid| slid.fits(grid, arms))
+            && self.adhesive.as_ref().is_none_or(|last| last.fits(grid))
             && self.last.as_ref().is_none_or(|last| last.fits(grid))
             && self.indented.as_ref().is_none_or(|indented| indented.fits(grid))
-            && [force, approach, mean_gap].into_iter().all(f64::is_finite)
+            && [force, elastic_force, approach, mean_gap].into_iter().all(f64::is_finite)
             && tangential_force.into_iter().chain(tangential_displacement).all(f64::is_finite)
     }
 }
@@ -85,7 +93,8 @@ impl SlipHistory {
     pub fn begin(&self, law: &StepLaw, left: &[f64], sliding: &mut SurfaceFriction) {
         let (cells, from) = (&self.tractions.cells, &self.slipped.cells);
         let zeros = vec![0.0; 2 * cells.len()];
-        let known = |values: &[f64]| if from.is_empty() { zeros.clone() } else { carried(cells, from, values) };
+        let known =
+            |values: &[f64]| if from.is_empty() { zeros.clone() } else { carried(cells, from, values) };
         sliding.before = SlipMemory {
             cells: cells.clone(),
             traction: self.tractions.elastic.iter().zip(left).map(|(p, left)| p - left).collect(),
