@@ -300,7 +300,7 @@
 //!
 //! * adhesion of short range together with a hardness or with a coefficient of friction, and full coupling of
 //!   friction together with a hardness, with adhesion or with a shear strength;
-//! * rheology together with adhesion or friction, and a stiffness of a viscoelastic body;
+//! * rheology together with adhesion of short range or full coupling, and a stiffness of a viscoelastic body;
 //! * adhesion and friction of profiles;
 //! * displacement fields, conductances and loads by approach, for profiles with free boundaries.
 
@@ -330,4 +330,4 @@ pub mod benchmarks;
 
 /// Number of the solver's format. It changes with anything that can change a result beyond its tolerance, so
 /// that stored results of other versions are not mixed with new ones.
-pub const FORMAT: u32 = 5;
+pub const FORMAT: u32 = 6;

@@ -487,7 +487,7 @@ fn tractions_relax_as_pressures_do() {
         assert_relative_eq!(of(state).force[0] / first.force[0], modulus / 4.0, max_relative = 1e-6);
         assert_relative_eq!(of(state).stick_area.unwrap(), first.stick_area.unwrap());
         assert_relative_eq!(of(state).dissipated, first.dissipated, max_relative = 1e-6);
-        assert!(state.viscoelastic.unwrap().tangential_time_error.unwrap() < 1e-6);
+        assert!(state.viscoelastic.unwrap().tangential_time_errors.unwrap()[0] < 1e-6);
     }
 }
 
@@ -507,7 +507,7 @@ fn a_tangential_force_on_a_relaxed_contact_creeps() {
     for state in &history(&MODEL, &scene, &steps)[2..] {
         let creep = creep(&SOLID, state.time.unwrap() - 200.0);
         let (found, expected) = (state.tangential.unwrap(), expected.tangential.unwrap());
-        let error = 1e-5 + state.viscoelastic.unwrap().tangential_time_error.unwrap();
+        let error = 1e-5 + state.viscoelastic.unwrap().tangential_time_errors.unwrap()[1];
         assert_relative_eq!(found.displacement[0], creep * expected.displacement[0], max_relative = error);
         assert_relative_eq!(found.stick_area.unwrap(), expected.stick_area.unwrap(), max_relative = 0.02);
         assert_relative_eq!(found.force[0], tangential);
@@ -627,7 +627,6 @@ fn beside_the_integral(law: AdhesionLaw, states: u32) -> f64 {
 fn an_attraction_has_a_history_too() {
     for law in [AdhesionLaw::Exponential, AdhesionLaw::Dugdale] {
         let [coarse, fine] = [10, 40].map(|states| beside_the_integral(law, states));
-        println!("{law:?} {coarse} {fine}");
         assert!(fine < 2e-3 && fine < 0.4 * coarse, "{law:?}: {coarse} {fine}");
     }
 }
@@ -670,7 +669,7 @@ fn what_is_drawn_off_fast_holds_more() {
             .fold(0.0, f64::max)
     };
     let [slow, fast] = [1e-4, 1.0].map(largest);
-    assert!(fast > 1.1 * slow && slow > 0.0, "{slow} {fast}");
+    assert!(fast > 2.0 * slow && slow > 0.0, "{slow} {fast}");
     // The pull of the relaxed body is the least that holds for ever.
     let mut contact = MODEL.prepare(&scene, 3).unwrap();
     let held = |time, force| Step::new(time, Load::force(force));

@@ -629,13 +629,19 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
         { role: Role::Residual("steps of time are short enough for the area: the relative difference of the number of cells from that of steps twice as long"),
           average: Average::No, drawn: false }
         => |s, _| s.viscoelastic.map(|v| v.area_time_error).into();
-    "tangential_time_error" "tangential error by steps of time" "" One; AskedBy::All(&[FrictionInPlane, VISCOELASTIC]);
-        "estimated relative error of the tangential displacement, or of the tangential force where the displacement is prescribed, by steps of \
-         time: its difference from that of the same history in steps twice as long"
-        { role: Role::Residual("steps of time are short enough for the tangential displacement, or for the tangential force where the displacement \
-                                is prescribed: its relative difference from that of steps twice as long"),
+    "tangential_force_time_error" "error of the tangential force by steps of time" "" One; AskedBy::All(&[FrictionInPlane, VISCOELASTIC]);
+        "estimated relative error of the tangential force by steps of time: its difference from that of the same history in steps twice as long"
+        { role: Role::Residual("steps of time are short enough for the tangential force: its relative difference from that of steps twice as long"),
           average: Average::No, drawn: false }
-        => |s, _| s.viscoelastic.and_then(|v| v.tangential_time_error).into();
+        => |s, _| s.viscoelastic.and_then(|v| v.tangential_time_errors).map(|[force, _]| force).into();
+    "tangential_displacement_time_error" "error of the tangential displacement by steps of time" "" One;
+        AskedBy::All(&[FrictionInPlane, VISCOELASTIC]);
+        "estimated relative error of the tangential displacement by steps of time: its difference from that of the same history in steps \
+         twice as long"
+        { role: Role::Residual("steps of time are short enough for the tangential displacement: its relative difference from that of steps \
+                                twice as long"),
+          average: Average::No, drawn: false }
+        => |s, _| s.viscoelastic.and_then(|v| v.tangential_time_errors).map(|[_, displacement]| displacement).into();
     "equilibrium" "equilibrium" "" One; Effect("adhesion");
         "largest difference of an attraction from the law of its gap, over the traction in contact"
         { role: Role::Residual("the attraction of each cell is what the law says of its gap: the largest difference, over the largest traction"),

@@ -347,9 +347,9 @@ pub struct ViscoelasticState {
     pub distance_time_error: f64,
     /// Relative error of the number of cells in contact.
     pub area_time_error: f64,
-    /// Relative error of the tangential displacement, or of the tangential force where the displacement is
-    /// prescribed; `None` without friction.
-    pub tangential_time_error: Option<f64>,
+    /// Relative errors of the tangential force and of the tangential displacement; 0 for the one that is prescribed,
+    /// `None` without friction.
+    pub tangential_time_errors: Option<[f64; 2]>,
     /// Number of steps of time since the state before; 0 for a load in no time.
     pub time_steps: usize,
     /// Work of the normal load since the first step: what the body holds, and what has been dissipated in it. With
@@ -364,21 +364,20 @@ impl ViscoelasticState {
         [force_time_error, distance_time_error, area_time_error]: [f64; 3],
         time_steps: usize,
     ) -> Self {
-        let tangential_time_error = None;
         Self {
             force_time_error,
             distance_time_error,
             area_time_error,
-            tangential_time_error,
+            tangential_time_errors: None,
             time_steps,
             work: None,
         }
     }
 
-    /// With the error of what a tangential load leaves free.
+    /// With the errors of the tangential force and of the tangential displacement.
     #[must_use]
-    pub fn with_tangential_error(self, error: impl Into<Option<f64>>) -> Self {
-        Self { tangential_time_error: error.into(), ..self }
+    pub fn with_tangential_errors(self, errors: impl Into<Option<[f64; 2]>>) -> Self {
+        Self { tangential_time_errors: errors.into(), ..self }
     }
 
     /// With the work of the load.

@@ -63,7 +63,9 @@ pub fn solve_bytes(effects: &Effects, outputs: &Outputs, cells: Cells, contact: 
     }
     let mut always = TABLE;
     if let Ok(Some(spectrum)) = effects.rheology.spectrum(1.0) {
-        of_cell += HISTORY * (1 + spectrum.arms.len()) as f64;
+        // Of pressures, and of the two components of tractions.
+        let components = if effects.friction == Friction::Off { 1 } else { 3 };
+        of_cell += HISTORY * (components * (1 + spectrum.arms.len())) as f64;
         always += CREPT;
     }
     let dense = of_cell * count + DENSE_SIDE * count.sqrt();

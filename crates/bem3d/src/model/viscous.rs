@@ -480,16 +480,24 @@ impl ViscousHistory {
         normal.max(elastic).max(tangential)
     }
 
-    /// The relative difference between both histories in what a tangential load leaves free; `None` without friction.
-    fn tangential_error(&self, memory: &HistoryMemory, load: ScaledLoad) -> Option<f64> {
+    /// The relative differences between both histories in the tangential force and in the tangential displacement; 0 in
+    /// the one that is prescribed. `None` without friction.
+    fn tangential_errors(&self, memory: &HistoryMemory, load: ScaledLoad) -> Option<[f64; 2]> {
         self.friction?;
-        let Some(coarse) = &memory.coarse else { return Some(0.0) };
-        let [fine, coarse] = [memory.fine.reached, coarse.reached].map(|end| match load.tangential.control {
-            TangentialControl::Force(_) => end.tangential_displacement,
-            TangentialControl::Displacement(_) => end.tangential_force,
-        });
-        let difference = length([fine[0] - coarse[0], fine[1] - coarse[1]]);
-        Some(if difference > 0.0 { difference / length(fine).max(length(coarse)) } else { 0.0 })
+        let Some(coarse) = &memory.coarse else { return Some([0.0; 2]) };
+        let (fine, coarse) = (memory.fine.reached, coarse.reached);
+        let relative = |fine: [f64; 2], coarse: [f64; 2]| {
+            let difference = length([fine[0] - coarse[0], fine[1] - coarse[1]]);
+            if difference > 0.0 { difference / length(fine).max(length(coarse)) } else { 0.0 }
+        };
+        Some(match load.tangential.control {
+            TangentialControl::Force(_) => {
+                [0.0, relative(fine.tangential_displacement, coarse.tangential_displacement)]
+            }
+            TangentialControl::Displacement(_) => {
+                [relative(fine.tangential_force, coarse.tangential_force), 0.0]
+            }
+        })
     }
 
     /// The state at the end of a piece, with the error of its steps.
@@ -534,7 +542,7 @@ impl ViscousHistory {
         let has_zero = surface.has_approach() || surface.is_periodic();
         let of_load = (has_zero && self.attraction.is_none()).then_some(of_load);
         let found = ViscoelasticState::new(errors, work.steps).with_work(of_load);
-        Ok(state.with_viscoelastic(found.with_tangential_error(self.tangential_error(memory, load))))
+        Ok(state.with_viscoelastic(found.with_tangential_errors(self.tangential_errors(memory, load))))
     }
 
     /// A step of one track: its state, and the track at its end.

@@ -149,8 +149,8 @@ const TABLE: &[OtherWords] = &[
     key(
         ("effects", "rheology"),
         &["viscosity", "viscoelasticity", "viscoelastic", "creep", "relaxation", "prony"],
-        "a viscoelastic body is `rheology` in [effects], for the models mdr1d_viscoelastic and equivalent",
-        "viscoelastic bodies need a scene: `rheology` in [effects], for the models mdr1d_viscoelastic and equivalent",
+        "a viscoelastic body is `rheology` in [effects], for the models bem3d, mdr1d_viscoelastic and equivalent",
+        "viscoelastic bodies need a scene: `rheology` in [effects], for the models bem3d, mdr1d_viscoelastic and equivalent",
     ),
     key(
         ("effects", "boundary"),

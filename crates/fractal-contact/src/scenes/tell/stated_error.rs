@@ -18,7 +18,7 @@ pub(crate) const OF_SOLVER: &str = "The number behind ± is the estimated error 
                                    contain the error of the grid, which `grid_error = true` in [outputs] estimates for loads that do not form a path.";
 
 /// Quantities whose relative error on the cells that were solved is another quantity.
-const SOLVER_ERRORS: [(&str, &str); 11] = [
+const SOLVER_ERRORS: [(&str, &str); 15] = [
     ("force", "force_error"),
     ("stiffness", "stiffness_error"),
     ("tangential_stiffness", "tangential_stiffness_error"),
@@ -28,6 +28,10 @@ const SOLVER_ERRORS: [(&str, &str); 11] = [
     ("force", "force_time_error"),
     ("approach", "approach_time_error"),
     ("mean_gap", "mean_gap_time_error"),
+    ("tangential_force", "tangential_force_time_error"),
+    ("tangential_force_y", "tangential_force_time_error"),
+    ("tangential_displacement", "tangential_displacement_time_error"),
+    ("tangential_displacement_y", "tangential_displacement_time_error"),
     ("area", "area_time_error"),
     ("contact_fraction", "area_time_error"),
 ];
