@@ -239,7 +239,7 @@ impl<'a> StateFields<'a> {
         let bound: f64 = self.defined.iter().map(|&i| attraction(self.g[i])).sum();
         let elastic: f64 = 0.5 * self.p.iter().zip(self.u).map(|(p, u)| p * u).sum::<f64>();
         let size = self.cell * (bound.abs() + elastic.abs());
-        let found = self.state.adhesive.unwrap().energy;
+        let found = self.state.adhesive.unwrap().energy.unwrap();
         check(faults, "energy", found, self.cell * (bound + elastic), 1e-7 * size);
     }
 
