@@ -409,6 +409,7 @@ impl<'a> Solver<'a> {
         };
         let displace = |change: &[f64], u: &mut Vec<f64>| operators.exact(checked, change, checked, u, stop);
         let steps = descend(descent, displace, most, stop)?;
+        operators.plans.descent += steps;
         let contact = checked.filter(&p, |p| p > 0.0);
         p.retain(|&p| p > 0.0);
         let d = now.d;

@@ -320,7 +320,7 @@ impl PreparedSurface {
 
     /// Starts the counting of work.
     pub(super) fn begin_count(&mut self) {
-        self.problem.operators.plans.applications = 0;
-        self.problem.operators.plans.solves = 0;
+        let plans = &mut self.problem.operators.plans;
+        (plans.applications, plans.solves, plans.descent) = (0, 0, 0);
     }
 }

@@ -27,6 +27,8 @@ pub struct Plans<const N: usize, const E: usize> {
     pub applications: usize,
     /// Number of linear systems so far: factorisations and runs of conjugate gradients.
     pub solves: usize,
+    /// Steps of the fall-back so far, each of one of these applications.
+    pub descent: usize,
 }
 
 /// The operators of tangential tractions.
@@ -92,6 +94,7 @@ where
             torus: None,
             applications: 0,
             solves: 0,
+            descent: 0,
         }
     }
 
@@ -99,7 +102,8 @@ where
     /// not on earlier windows.
     pub fn forget_plans(&mut self) {
         let fresh = Self::new(Arc::clone(&self.table), &self.tuning, &self.recorder);
-        *self = Self { applications: self.applications, solves: self.solves, ..fresh };
+        let Self { applications, solves, descent, .. } = *self;
+        *self = Self { applications, solves, descent, ..fresh };
     }
 
     /// The kernel.
