@@ -11,8 +11,8 @@
 //! solved whose name contains it.
 
 use bem3d::{
-    Bem3d, Boundary, ContactModel, ContactState, Error, HeightMap, Layer, LayerBase, Load, Outputs, Scene, SelfAffine,
-    Surface,
+    Bem3d, Boundary, ContactModel, ContactState, Error, HeightMap, Layer, LayerBase, Load, Outputs, Scene,
+    SelfAffine, Surface,
 };
 use rayon::ThreadPoolBuilder;
 use std::sync::Arc;
@@ -101,8 +101,11 @@ fn table(cells: usize, part: &str) -> Result<(), Error> {
         let mut of_body: Vec<Cost> = Vec::new();
         let (mut loads, mut used, mut failed) = (0, 0, 0);
         for thickness in THICKNESSES {
-            let layer = body.map(|(poisson, base)| {
-                Layer { thickness: thickness / cells as f64, young: 1.0 - poisson * poisson, poisson, base }
+            let layer = body.map(|(poisson, base)| Layer {
+                thickness: thickness / cells as f64,
+                young: 1.0 - poisson * poisson,
+                poisson,
+                base,
             });
             let variation = variation(&map, layer)?;
             for boundary in [Boundary::Free, Boundary::Periodic] {
@@ -116,14 +119,18 @@ fn table(cells: usize, part: &str) -> Result<(), Error> {
                     let state = solved(contact.solve(Load::force(share * variation)))?;
                     let seconds = start.elapsed().as_secs_f64();
                     let report = &state.report;
-                    let fall_back = report.strategy.split("; ").find_map(|part| part.strip_suffix(" steps of the fall-back"));
+                    let fall_back = report
+                        .strategy
+                        .split("; ")
+                        .find_map(|part| part.strip_suffix(" steps of the fall-back"));
                     let fall_back = fall_back.and_then(|steps| steps.parse().ok()).unwrap_or(0);
                     let at = (boundary == Boundary::Periodic, i);
                     let beside = if body.is_none() {
                         times.push((at, seconds));
                         1.0
                     } else {
-                        seconds / times.iter().find(|(of, _)| *of == at).map_or(f64::NAN, |(_, seconds)| *seconds)
+                        seconds
+                            / times.iter().find(|(of, _)| *of == at).map_or(f64::NAN, |(_, seconds)| *seconds)
                     };
                     let residual = report.certificate.duality_gap.max(report.certificate.penetration);
                     println!(

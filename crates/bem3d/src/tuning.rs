@@ -111,6 +111,8 @@ pub struct Tuning {
     /// Outer iterations without better residuals, shortened ones among them, after which the fall-back takes
     /// over ...
     pub stalled: usize,
+    /// The same on a kernel that bulges, where sets rather alternate.
+    pub stalled_bulging: usize,
     /// ... for this many steps between two evaluations ...
     pub fall_back_steps: usize,
     /// ... until the residuals have fallen by this factor, by its square the second time, and so on.
@@ -221,6 +223,7 @@ impl Tuning {
         short_steps: 2,
         jammed: 1e-6,
         stalled: 30,
+        stalled_bulging: 10,
         fall_back_steps: 20,
         fall_back: 0.1,
         rounding: 1e-11,
@@ -265,7 +268,7 @@ macro_rules! constants {
 }
 
 /// Every constant of `Tuning`, for a study of the effect of each.
-pub const CONSTANTS: [Constant; 68] = constants![
+pub const CONSTANTS: [Constant; 69] = constants![
     pair_ns,
     point_ns,
     single,
@@ -305,6 +308,7 @@ pub const CONSTANTS: [Constant; 68] = constants![
     short_steps,
     jammed,
     stalled,
+    stalled_bulging,
     fall_back_steps,
     fall_back,
     rounding,

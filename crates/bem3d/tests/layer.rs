@@ -169,11 +169,12 @@ fn what_a_layer_cannot_do_is_refused_by_name() {
     }
 }
 
-/// A coating a hundred times as stiff as its base is solved at any thickness. At ten thousand some are not, and then
-/// the best state comes as an error with its residuals.
+/// Coatings up to ten thousand times as stiff as their base are solved at any thickness, and a single force comes to
+/// the state that the approach of it comes to.
 #[test]
-fn hard_coatings_are_solved_or_say_that_they_are_not() {
-    for (young, all) in [(1e-2, true), (1e-4, false)] {
+fn hard_coatings_are_solved() {
+    let mut fell_back = 0;
+    for young in [1e-2, 1e-4] {
         for thickness in [0.004, 0.04, 0.4] {
             for boundary in [Boundary::Free, Boundary::Periodic] {
                 let base = LayerBase::HalfSpace { young, poisson: 0.3 };
@@ -182,15 +183,18 @@ fn hard_coatings_are_solved_or_say_that_they_are_not() {
                 let mut contact =
                     ContactModel::prepare(&Bem3d { cells: 64, ..Bem3d::default() }, &scene, 3).unwrap();
                 for force in [1e-7, 1e-6, 1e-5] {
-                    match contact.solve(Load::force(force)) {
-                        Ok(state) => assert!(state.report.certificate.duality_gap <= 1e-6),
-                        Err(Error::NotConverged { best }) if !all => {
-                            assert_ne!(best.report.status, bem3d::Status::Converged);
-                        }
-                        Err(error) => panic!("{young} {thickness} {boundary:?} {force}: {error}"),
+                    let state = contact.solve(Load::force(force));
+                    let state =
+                        state.unwrap_or_else(|e| panic!("{young} {thickness} {boundary:?} {force}: {e}"));
+                    assert!(state.report.certificate.duality_gap <= 1e-6);
+                    fell_back += usize::from(state.report.strategy.contains("fall-back"));
+                    if let Some(approach) = state.approach {
+                        let again = contact.solve(Load::approach(approach)).unwrap();
+                        approx::assert_relative_eq!(again.force, force, max_relative = 1e-4);
                     }
                 }
             }
         }
     }
+    assert!(fell_back > 0, "the test is too easy");
 }

@@ -3,6 +3,7 @@
 mod bounds;
 mod candidates;
 mod initial_guess;
+mod interior_point;
 mod line_search;
 mod progress;
 mod residuals;

@@ -1,6 +1,8 @@
 //! The outer iteration: solve on a superset of the contact set, remove cells in tension, add penetrating
 //! cells.
 
+use super::bounds::Bounds;
+use super::interior_point::{InteriorPressure, InteriorProblem};
 use super::line_search::{StepStart, shorten};
 use super::progress::{Decision, Evaluated, Look, OuterProgress, criteria};
 use super::residuals::ContactGap;
@@ -80,6 +82,9 @@ struct Pressure {
 /// Candidates found for one approach are also used for another one of at most this multiple of it, which is
 /// less than the reserve with which they were chosen. Other values were not measured.
 const KEPT_REACH: f64 = 1.02;
+
+/// The share of the tolerance to which the interior-point method goes.
+const INSIDE: f64 = 0.2;
 
 struct Solver<'a> {
     problem: &'a mut Problem,
@@ -181,8 +186,14 @@ impl<'a> Solver<'a> {
         steps: &mut usize,
         stop: Stop<'_>,
     ) -> Result<(Status, f64), Interrupted> {
-        let (tuning, recorder) = (*self.problem.operators.tuning(), self.recorder());
+        let (mut tuning, recorder) = (*self.problem.operators.tuning(), self.recorder());
         let tolerance = self.limits.tolerance;
+        let bulges = self.problem.operators.table().kernel().may_bulge();
+        if bulges {
+            tuning.stalled = tuning.stalled_bulging;
+        }
+        // Once, and without an upper bound.
+        let mut inside = bulges && self.problem.bounds == Bounds::Unlimited;
         loop {
             let mut evaluated = match known.take() {
                 Some(known) => {
@@ -206,7 +217,11 @@ impl<'a> Solver<'a> {
                     // From the exact gap of a pressure that obeys the bounds and the force.
                     self.evaluate(Look::Exact, stop)?;
                 }
-                *steps += self.descend(stop)?;
+                let found = if std::mem::take(&mut inside) { self.solve_inside(stop)? } else { None };
+                *steps += match found {
+                    Some(steps) => steps,
+                    None => self.descend(stop)?,
+                };
                 continue;
             }
             let may_alternate = self.problem.bounds.is_reached(&self.now.p);
@@ -387,6 +402,38 @@ impl<'a> Solver<'a> {
         let d = now.d;
         self.advance(Pressure { contact, p, d, q: None });
         Ok(outcome.steps)
+    }
+
+    /// The fall-back of a kernel that bulges, which begins from no contact set. Returns the steps taken; `None`
+    /// where it found no pressure.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop; the present pressure is then as it was.
+    fn solve_inside(&mut self, stop: Stop<'_>) -> Result<Option<usize>, Interrupted> {
+        let Self { problem, target, limits, now, state, .. } = self;
+        let Problem { operators, candidates, .. } = &mut **problem;
+        let cells = &state.checked;
+        let before = operators.plans.applications;
+        let inside = InteriorProblem {
+            z: &candidates.gaps(cells),
+            cells,
+            force: target.force(),
+            approach: now.d,
+            enough: INSIDE * limits.tolerance * limits.height.unwrap_or(now.d),
+            operators,
+        };
+        let found = inside.solve(now.p.iter().sum::<f64>() / cells.len() as f64, stop)?;
+        operators.plans.descent += operators.plans.applications - before;
+        let Some(InteriorPressure { mut p, gap, approach, steps }) = found else { return Ok(None) };
+        let own = operators.table().own();
+        update(&mut p, &gap, |p, gap| *p = if own * *p > *gap { *p } else { 0.0 });
+        let contact = cells.filter(&p, |p| p > 0.0);
+        p.retain(|&p| p > 0.0);
+        if contact.is_empty() {
+            return Ok(None);
+        }
+        self.advance(Pressure { contact, p, d: approach, q: None });
+        Ok(Some(steps))
     }
 
     /// Steps of the fall-back from the present pressure and its gap. Returns the steps taken.

@@ -40,6 +40,11 @@ pub trait Kernel<const E: usize>: fmt::Debug + Any + Send + Sync {
         false
     }
 
+    /// Whether corrections of the tractions may take a kernel that is wrong at long lags.
+    fn may_be_shortened(&self) -> bool {
+        true
+    }
+
     /// The circular lengths of a transform, which would be `lengths` if the map did not repeat itself.
     fn within_period(&self, lengths: Lengths) -> Lengths {
         if self.boundary() == Boundary::Periodic { lengths.within_period(self.grid()) } else { lengths }

@@ -215,6 +215,9 @@ impl<const E: usize> KernelTable<E> {
     /// Circular lengths for corrections of the tractions, exact up to lags of half `share` of the window
     /// ([`Lengths::shortened`]).
     pub fn shortened_lengths(&self, window: Window, share: f64) -> Lengths {
+        if !self.kernel.may_be_shortened() {
+            return self.exact_lengths(window);
+        }
         let (short, exact) = (Lengths::shortened(window, share), self.unrepeated_lengths(window));
         self.kernel.within_period(Lengths { x: short.x.min(exact.x), y: short.y.min(exact.y) })
     }

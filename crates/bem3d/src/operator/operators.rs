@@ -122,6 +122,23 @@ impl Operators {
         self.plans.exact(sources, p, targets, u, stop)
     }
 
+    /// The inverse of G on a torus around a set, of values on it; in single precision.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop; `z` is then undefined.
+    pub fn torus_inverse(
+        &mut self,
+        set: &CellSet,
+        r: &[f64],
+        z: &mut [f64],
+        stop: Stop<'_>,
+    ) -> Result<(), Interrupted> {
+        match self.plans.inverse(set, stop)? {
+            Some(inverse) => inverse.apply_until(set, r, set, z, stop),
+            None => Ok(()),
+        }
+    }
+
     /// An upper estimate of the error of [`Self::rough`] over the largest displacement; 0 where sums over
     /// pairs are cheapest.
     pub fn roughness(&self, sources: &CellSet, targets: &CellSet) -> f64 {

@@ -193,6 +193,20 @@ where
         Ok(inverse.map(|inverse| (kernel, inverse)))
     }
 
+    /// The inverse on a torus around a set, in single precision; `None` on no cells.
+    ///
+    /// # Errors
+    /// [`Interrupted`] by the stop while its symbol is made.
+    pub fn inverse(
+        &mut self,
+        set: &CellSet,
+        stop: Stop<'_>,
+    ) -> Result<Option<&mut Convolution<f32, N, E>>, Interrupted> {
+        let Some(window) = set.window() else { return Ok(None) };
+        let lengths = self.table.torus_lengths(window);
+        Ok(self.planned(None, window, Some(lengths), stop)?.1)
+    }
+
     /// The kernel in single precision by transforms of these lengths, by sums over pairs where there are none;
     /// and the transform of its inverse on a torus, where that has lengths.
     ///
