@@ -229,6 +229,3 @@ impl InteriorMetric {
 
 #[cfg(test)]
 mod tests;
-
-#[cfg(test)]
-mod tests;
