@@ -253,7 +253,8 @@ fn a_plateau_snaps_in_and_off_and_loses_energy() {
     assert!(lost > 0.0, "{lost}");
     // Without a jump the work of the load is what is stored.
     let before = first - 1;
-    let stored = rising[before].adhesive.unwrap().energy - rising[0].adhesive.unwrap().energy;
+    let stored =
+        rising[before].adhesive.unwrap().energy.unwrap() - rising[0].adhesive.unwrap().energy.unwrap();
     let done = work(&rising[..=before], &up[..=before]);
     assert!((stored / done - 1.0).abs() < 0.01, "{stored} {done}");
     for state in rising.iter().chain(&falling) {
