@@ -120,11 +120,10 @@ impl PreparedSurface {
             self.slip_fields(slid, fields)?;
         }
         let tangential = slid.map(|slid| self.tangential(slid)).transpose()?.flatten();
-        let mut strategy = found.strategy;
-        let descent = std::mem::take(&mut self.problem.operators.plans.descent);
-        if descent > 0 {
-            strategy.push_str(&format!("; {descent} steps of the fall-back"));
-        }
+        let strategy = match std::mem::take(&mut self.problem.operators.plans.descent) {
+            0 => found.strategy,
+            steps => format!("{}; {steps} steps of the fall-back", found.strategy),
+        };
         let mut report = SolveReport::new(found.status, strategy);
         report.work = Work::of(std::mem::take(&mut self.problem.operators.plans.solves), fields.as_ref());
         report.iterations = found.iterations;
