@@ -140,7 +140,8 @@
 //! need up to twice as much. There, and by rounding, an early stop of the linear solve or a hardness, a
 //! cell may be removed that belongs to the contact. Step 3 then returns it. If the residuals have not
 //! fallen for many iterations, a fall-back takes over that lowers the energy with every step
-//! (`law::descent`).
+//! (`law::descent`). On a layer G is no such matrix, and on hard coatings the sets alternate. There the
+//! fall-back is an interior-point method (`active_set::interior_point`).
 //!
 //! Coarse grids give initial guesses. They never restrict the candidates, because the summits of a fractal
 //! vanish on them.
@@ -241,6 +242,7 @@
 //! | `active_set::progress` | the end of the outer iteration, and the tolerance of the next linear solve | decisions one by one |
 //! | `law` | what a cell obeys: an interval of pressures or a disc of tractions, with projections onto the admissible ones of a given sum and their part of the duality gap | by hand |
 //! | `law::descent` | the fall-back of contact and of friction: projected gradients and conjugate gradients between the bounds, each step downhill | random states by a dense reference |
+//! | `active_set::interior_point` | the fall-back of kernels that bulge: pressures and gaps that stay positive while their product falls | the conditions of contact by sums over pairs |
 //! | `active_set::residuals` | the one routine of the certificate | values by hand |
 //! | `active_set::undecided` | how far an open gap may still change: the largest gap left near by, and an eighth of the largest anywhere; cells below that are undecided and count in the error of k | true changes of all open gaps by elimination |
 //! | `response` | the stiffnesses of pressures, of tractions on a branch of friction, and along a branch of adhesion: one refinement of `A X = B` for any number of directions, with a Ritz value and an upper estimate; the error has a part from the solve and one from undecided cells | full contact of small squares; tighter solves; difference quotients |

@@ -11,7 +11,7 @@ use contact_model::{
 use mdr1d::Viscoelastic;
 use std::f64::consts::PI;
 
-pub(super) const CASES: [HardCase; 5] = [
+pub(super) const CASES: [HardCase; 6] = [
     HardCase {
         name: "a thin incompressible layer",
         why: "the surface bulges beside the load, contact reaches beyond the undeformed intersection, and the kernel nearly vanishes for long waves",
@@ -24,7 +24,14 @@ pub(super) const CASES: [HardCase; 5] = [
         why: "it is a plate on a soft bed: contact and gaps alternate around each summit, and the kernel changes its sign",
         asserted: "the certificate; the force under a larger approach is larger; no gap is negative (over the height)",
         bound: 1e-6,
-        solve: hard_coating,
+        solve: |ledger, effort| hard_coating(ledger, effort, (100.0, [0.01, 0.05])),
+    },
+    HardCase {
+        name: "a coating ten thousand times as hard as its base, thinner than a cell",
+        why: "the iteration over contact sets alternates, and an interior-point method has to find the set",
+        asserted: "the certificate; the force under a larger approach is larger; no gap is negative (over the height)",
+        bound: 1e-6,
+        solve: |ledger, effort| hard_coating(ledger, effort, (1e4, [0.002, 0.006])),
     },
     HardCase {
         name: "a strip of two rows",
@@ -66,12 +73,12 @@ fn thin_layer(ledger: &mut Ledger, effort: Effort) -> Result<()> {
     Ok(())
 }
 
-fn hard_coating(ledger: &mut Ledger, effort: Effort) -> Result<()> {
+fn hard_coating(ledger: &mut Ledger, effort: Effort, (ratio, thicknesses): (f64, [f64; 2])) -> Result<()> {
     let map = rough_map(2.2, effort.pick(65, 129), 3)?;
-    for thickness in [0.01, 0.05] {
-        let mut scene = Scene::new(Surface::Heights(map.clone().into()), 100.0);
+    for thickness in thicknesses {
+        let mut scene = Scene::new(Surface::Heights(map.clone().into()), ratio);
         let base = LayerBase::HalfSpace { young: 1.0, poisson: 0.0 };
-        scene.effects.layer = Some(Layer { thickness, young: 100.0, poisson: 0.0, base });
+        scene.effects.layer = Some(Layer { thickness, young: ratio, poisson: 0.0, base });
         scene.outputs = Outputs { gap: true, ..Outputs::default() };
         let mut contact = Bem3d { tolerance: 1e-7, ..Bem3d::default() }.prepare(&scene, 0)?;
         let height = contact.normalisation().height.unwrap_or(1.0);
