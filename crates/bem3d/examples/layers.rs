@@ -2,13 +2,14 @@
 //!
 //! A self-affine surface (H = 0.8, roll-off at a quarter of the side) is pressed on layers of three thicknesses,
 //! counted in sides of a cell, on all bases. The mean pressures are multiples of the root mean square of the
-//! pressure variations in full contact, which each body has for itself, so that about 1, 24, 68 and 98 % of the map
-//! touch on all of them. Each load is a cold start to the tolerance 1e-6 without a stiffness, on one thread. The time is that of
-//! the same load on the half-space of the layer's material; tables and symbols are made before.
+//! pressure variations in full contact, which each body has for itself. On a periodic half-space 1 to 98 % of
+//! the map touch under them. Each load is a cold start to the tolerance 1e-6 without a stiffness, on one
+//! thread. The time is that of the same load on the half-space of the layer's material; tables and symbols are
+//! made before.
 //!
-//! Each line has the residual of loads that did not converge, the applications of the kernel, the share of
-//! them that the fall-back has taken, and the ratio of the times. Lines of sums follow. With a PART only the bodies are
-//! solved whose name contains it.
+//! Each line has the largest residual, the applications of the kernel, the share of them that the fall-back has
+//! taken, and the ratio of the times. Lines of sums follow. With a PART only the bodies are solved whose name
+//! contains it.
 
 use bem3d::{
     Bem3d, Boundary, ContactModel, ContactState, Error, HeightMap, Layer, LayerBase, Load, Outputs, Scene,
@@ -134,7 +135,8 @@ fn table(cells: usize, part: &str) -> Result<(), Error> {
                     };
                     let residual = report.certificate.duality_gap.max(report.certificate.penetration);
                     println!(
-                        "{name:18} h {thickness:4} cells {:8} p {share:5} A {:6.2} % {:16} {residual:7.1e} applications {:5} fall-back {:3.0} % time x {beside:6.2} ({seconds:.3} s)",
+                        "{name:18} h {thickness:4} cells {:8} p {share:5} A {:6.2} % {:16} {residual:7.1e} \
+                         applications {:5} fall-back {:3.0} % time x {beside:6.2} ({seconds:.3} s)",
                         if at.0 { "periodic" } else { "free" },
                         100.0 * state.area.unwrap_or(0.0),
                         report.status.as_str(),
@@ -156,7 +158,8 @@ fn table(cells: usize, part: &str) -> Result<(), Error> {
         let mut ratios: Vec<f64> = of_body.iter().map(|cost| cost.seconds).collect();
         ratios.sort_by(f64::total_cmp);
         println!(
-            "SUM {name:18} loads {loads} not converged {failed} with fall-back {used}, {:.0} % of the applications; time x median {:.1} largest {:.1}",
+            "SUM {name:18} loads {loads} not converged {failed} with fall-back {used}, {:.0} % of the applications; \
+             time x median {:.1} largest {:.1}",
             100.0 * fall_back as f64 / applications as f64,
             ratios[ratios.len() / 2],
             ratios[ratios.len() - 1],
