@@ -106,7 +106,7 @@ fn work_is_stored_or_taken_by_the_flow() {
     let scene = scene(Some(0.05), 1e-4, AdhesionLaw::Exponential, Boundary::Free);
     let states = path(&scene, &approaches(&values));
     let energy = |state: &ContactState| {
-        state.adhesive.as_ref().unwrap().energy + state.plastic.as_ref().unwrap().dissipated
+        state.adhesive.as_ref().unwrap().energy.unwrap() + state.plastic.as_ref().unwrap().dissipated
     };
     let (mut work, mut largest) = (0.0, 0.0_f64);
     for (pair, d) in states.windows(2).zip(values.windows(2)) {

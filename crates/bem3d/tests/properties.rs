@@ -356,7 +356,7 @@ proptest! {
         let states = [0.0, 1.0, 2.0].map(|i| at(&mut *path, from * range + i * step));
         for pair in states.windows(2) {
             let (a, b) = (pair[0].force, pair[1].force);
-            let [e0, e1] = [&pair[0], &pair[1]].map(|state| state.adhesive.unwrap().energy);
+            let [e0, e1] = [&pair[0], &pair[1]].map(|state| state.adhesive.unwrap().energy.unwrap());
             let slope = (e1 - e0) / step;
             let slack = ENERGY * (e0.abs() + e1.abs()) + SAME * (a.abs() + b.abs());
             prop_assert!(slope >= a.min(b) - slack && slope <= a.max(b) + slack, "{} {} {}", a, slope, b);
