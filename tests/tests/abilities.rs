@@ -120,10 +120,22 @@ fn declared(model: &dyn ContactModel) -> impl Iterator<Item = Scene> {
     })
 }
 
+/// A scene of friction between bodies that relax, of a model that declares both effects.
+fn friction_that_relaxes(model: &dyn ContactModel) -> Option<Scene> {
+    let abilities = model.abilities();
+    let effect = |key: &str| abilities.effects.iter().copied().find(|effect| effect.key() == key);
+    let (friction, rheology) = effect("friction").zip(effect("rheology"))?;
+    let mut scene = scene(abilities.surfaces[0], abilities.boundaries[0], Some(rheology));
+    scene.effects.friction = friction.example().friction;
+    let pair = Pair { first: Body::Rigid, second: Body::Elastic { young: 1.5, poisson: 0.5 } };
+    scene.pair = Some(pair);
+    Some(scene)
+}
+
 /// Names of the quantities that a model reports for some state of the scenes that it declares.
 pub fn told(model: &dyn ContactModel) -> BTreeSet<&'static str> {
     let mut told = BTreeSet::new();
-    for mut scene in declared(model) {
+    for mut scene in declared(model).chain(friction_that_relaxes(model)) {
         let outputs = model.abilities().outputs;
         let rheology = scene.effects.rheology != Rheology::Elastic;
         for &output in outputs {

@@ -75,7 +75,7 @@ fn variation(map: &Arc<HeightMap>, layer: Option<Layer>) -> Result<f64, Error> {
 }
 
 /// The work of a load.
-struct Cost {
+struct LayerCost {
     applications: usize,
     fall_back: usize,
     seconds: f64,
@@ -99,7 +99,7 @@ fn table(cells: usize, part: &str) -> Result<(), Error> {
         if body.is_some() && !name.contains(part) {
             continue;
         }
-        let mut of_body: Vec<Cost> = Vec::new();
+        let mut of_body: Vec<LayerCost> = Vec::new();
         let (mut loads, mut used, mut failed) = (0, 0, 0);
         for thickness in THICKNESSES {
             let layer = body.map(|(poisson, base)| Layer {
@@ -146,7 +146,7 @@ fn table(cells: usize, part: &str) -> Result<(), Error> {
                     loads += 1;
                     used += usize::from(fall_back > 0);
                     failed += usize::from(report.status != bem3d::Status::Converged);
-                    of_body.push(Cost { applications: report.applications, fall_back, seconds: beside });
+                    of_body.push(LayerCost { applications: report.applications, fall_back, seconds: beside });
                 }
             }
             if body.is_none() {
