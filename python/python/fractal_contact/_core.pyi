@@ -474,7 +474,7 @@ class ContactState:
         """str or None: branch, whether the bodies were brought nearer or drawn apart."""
     @property
     def energy(self) -> float | None:
-        """float or None: elastic energy less the work of adhesion done [J]."""
+        """float or None: elastic energy less the work of adhesion done, of elastic bodies [J]."""
     @property
     def stability(self) -> float | None:
         """float or None: stability, a minimum of the energy where > 0: its least curvature over that without
@@ -603,6 +603,16 @@ class ContactState:
     def area_time_error(self) -> float | None:
         """float or None: estimated relative error of the area by steps of time: the difference of the number of
         cells from that of the same history in steps twice as long.
+        """
+    @property
+    def tangential_force_time_error(self) -> float | None:
+        """float or None: estimated relative error of the tangential force by steps of time: its difference from that
+        of the same history in steps twice as long.
+        """
+    @property
+    def tangential_displacement_time_error(self) -> float | None:
+        """float or None: estimated relative error of the tangential displacement by steps of time: its difference
+        from that of the same history in steps twice as long.
         """
     @property
     def equilibrium(self) -> float | None:
