@@ -61,7 +61,7 @@ const ROUNDS: usize = 12;
 /// Reduction of the squared residual in the first round.
 const FIRST_REDUCTION: f64 = 1e-12;
 /// A round aims at this share of the requested width.
-const AIM: f64 = 0.03;
+const AIM: f64 = 0.3;
 /// Rounds end where one of them leaves more than this share of the width: rounding is then all that is left.
 const PROGRESS: f64 = 0.5;
 

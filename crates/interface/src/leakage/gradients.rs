@@ -19,6 +19,7 @@ pub(super) struct Potential {
 }
 
 /// The exact difference `a - b` of two numbers as a sum of two numbers (Knuth).
+#[inline]
 fn exact_difference(a: f64, b: f64) -> (f64, f64) {
     let difference = a - b;
     let from_b = difference - a;
@@ -31,6 +32,7 @@ impl Potential {
     }
 
     /// Potential of a node above that of another one, rounded once.
+    #[inline]
     pub fn above(&self, node: usize, other: usize) -> f64 {
         let (high, rest) = exact_difference(self.high[node], self.high[other]);
         high + (rest + (self.low[node] - self.low[other]))

@@ -32,11 +32,13 @@ impl Graph {
     }
 
     /// The entries of a node.
+    #[inline]
     pub fn entries(&self, node: usize) -> std::ops::Range<usize> {
         self.offsets[node] as usize..self.offsets[node + 1] as usize
     }
 
     /// The neighbours of a node with the conductances to them.
+    #[inline]
     pub fn conductors(&self, node: usize) -> impl Iterator<Item = (usize, f64)> {
         let entries = self.entries(node);
         let neighbours = self.neighbours[entries.clone()].iter().map(|&node| node as usize);
@@ -51,6 +53,7 @@ impl Graph {
     }
 
     /// Current out of a node.
+    #[inline]
     pub fn current(&self, node: usize, potential: &[f64]) -> f64 {
         let own = potential[node];
         let between = self.conductors(node).map(|(other, weight)| weight * (own - potential[other]));

@@ -28,7 +28,8 @@ const BLOCK: usize = 1 << 16;
 struct GraphLevel {
     /// Its network; the caller shares that of the finest level.
     graph: Arc<Graph>,
-    diagonal: Vec<f64>,
+    /// The reciprocals of the diagonal.
+    inverse: Vec<f64>,
     /// The aggregates of its nodes; `None` at the coarsest level.
     aggregates: Option<Aggregates>,
     vectors: LevelVectors,
@@ -70,13 +71,13 @@ impl Hierarchy {
             let coarser = (nodes > ELIMINATED).then(|| coarsen(&graph));
             let coarser = coarser.filter(|(aggregates, _)| aggregates.count * SLOWEST < nodes * (SLOWEST - 1));
             let vectors = LevelVectors::new(nodes, levels.is_empty());
-            let diagonal = graph.diagonal();
+            let inverse = graph.diagonal().iter().map(|d| 1.0 / d).collect();
             let Some((aggregates, coarse)) = coarser else {
                 let elimination = (nodes <= ELIMINATED).then(|| Elimination::new(&graph));
-                levels.push(GraphLevel { graph, diagonal, aggregates: None, vectors });
+                levels.push(GraphLevel { graph, inverse, aggregates: None, vectors });
                 return Ok(Self { levels, elimination });
             };
-            levels.push(GraphLevel { graph, diagonal, aggregates: Some(aggregates), vectors });
+            levels.push(GraphLevel { graph, inverse, aggregates: Some(aggregates), vectors });
             graph = Arc::new(coarse);
         }
     }
@@ -104,21 +105,21 @@ impl LevelVectors {
 /// One cycle from the first of the levels.
 fn cycle(levels: &mut [GraphLevel], elimination: Option<&Elimination>, right: &[f64], potential: &mut [f64]) {
     let Some((level, coarser)) = levels.split_first_mut() else { return };
-    let GraphLevel { graph, diagonal, aggregates, vectors } = level;
+    let GraphLevel { graph, inverse, aggregates, vectors } = level;
     let Some(aggregates) = aggregates else {
         if let Some(elimination) = elimination {
             elimination.solve(right, potential);
         } else {
-            sweep_down(graph, diagonal, right, potential);
+            sweep_down(graph, inverse, right, potential);
             for _ in 0..LAST_SWEEPS {
-                sweep_up(graph, diagonal, right, potential, &mut vectors.residual);
-                sweep_again(graph, diagonal, right, potential, &mut vectors.residual);
+                sweep_up(graph, inverse, right, potential, &mut vectors.residual);
+                sweep_again(graph, inverse, right, potential, &mut vectors.residual);
             }
-            sweep_up(graph, diagonal, right, potential, &mut vectors.residual);
+            sweep_up(graph, inverse, right, potential, &mut vectors.residual);
         }
         return;
     };
-    sweep_down(graph, diagonal, right, potential);
+    sweep_down(graph, inverse, right, potential);
     graph.residual(right, potential, &mut vectors.residual);
     let coarse_right = &mut coarser[0].vectors.right;
     coarse_right.fill(0.0);
@@ -130,7 +131,7 @@ fn cycle(levels: &mut [GraphLevel], elimination: Option<&Elimination>, right: &[
     for (&aggregate, potential) in aggregates.of_node.iter().zip(potential.iter_mut()) {
         *potential += correction[aggregate as usize];
     }
-    sweep_up(graph, diagonal, right, potential, &mut vectors.residual);
+    sweep_up(graph, inverse, right, potential, &mut vectors.residual);
 }
 
 /// Solves a coarser problem by two steps of conjugate gradients; what comes out is `first`.
@@ -160,7 +161,7 @@ fn solve_coarse(levels: &mut [GraphLevel], elimination: Option<&Elimination>) {
 }
 
 /// Gauss-Seidel within each block from potentials of zero, from the first row to the last.
-fn sweep_down(graph: &Graph, diagonal: &[f64], right: &[f64], potential: &mut [f64]) {
+fn sweep_down(graph: &Graph, inverse: &[f64], right: &[f64], potential: &mut [f64]) {
     let tasks = potential.chunks_mut(BLOCK).enumerate();
     map(WORK_PER_ROW * graph.nodes(), tasks, |(block, own)| {
         let begin = block * BLOCK;
@@ -168,37 +169,42 @@ fn sweep_down(graph: &Graph, diagonal: &[f64], right: &[f64], potential: &mut [f
             let node = begin + i;
             let before = graph.conductors(node).filter(|&(other, _)| (begin..node).contains(&other));
             let current = before.map(|(other, weight)| weight * own[other - begin]).sum::<f64>();
-            own[i] = (right[node] + current) / diagonal[node];
+            own[i] = (right[node] + current) * inverse[node];
         }
     });
 }
 
 /// Gauss-Seidel within each block from the last row to the first; neighbours in other blocks keep their potentials.
-fn sweep_up(graph: &Graph, diagonal: &[f64], right: &[f64], potential: &mut [f64], before: &mut [f64]) {
-    before.copy_from_slice(potential);
+fn sweep_up(graph: &Graph, inverse: &[f64], right: &[f64], potential: &mut [f64], before: &mut [f64]) {
+    if potential.len() > BLOCK {
+        before.copy_from_slice(potential);
+    }
     let tasks = potential.chunks_mut(BLOCK).enumerate();
     map(WORK_PER_ROW * graph.nodes(), tasks, |(block, own)| {
         for i in (0..own.len()).rev() {
-            own[i] = relaxed(graph, diagonal, right, block * BLOCK, own, before, i);
+            own[i] = relaxed(graph, inverse, right, block * BLOCK, own, before, i);
         }
     });
 }
 
 /// As [`sweep_up`], from the first row to the last.
-fn sweep_again(graph: &Graph, diagonal: &[f64], right: &[f64], potential: &mut [f64], before: &mut [f64]) {
-    before.copy_from_slice(potential);
+fn sweep_again(graph: &Graph, inverse: &[f64], right: &[f64], potential: &mut [f64], before: &mut [f64]) {
+    if potential.len() > BLOCK {
+        before.copy_from_slice(potential);
+    }
     let tasks = potential.chunks_mut(BLOCK).enumerate();
     map(WORK_PER_ROW * graph.nodes(), tasks, |(block, own)| {
         for i in 0..own.len() {
-            own[i] = relaxed(graph, diagonal, right, block * BLOCK, own, before, i);
+            own[i] = relaxed(graph, inverse, right, block * BLOCK, own, before, i);
         }
     });
 }
 
 /// The potential at which no current is left in a node of a block.
+#[inline]
 fn relaxed(
     graph: &Graph,
-    diagonal: &[f64],
+    inverse: &[f64],
     right: &[f64],
     begin: usize,
     own: &[f64],
@@ -206,7 +212,7 @@ fn relaxed(
     i: usize,
 ) -> f64 {
     let node = begin + i;
-    let at = |other: usize| own.get(other.wrapping_sub(begin)).copied().unwrap_or(before[other]);
+    let at = |other: usize| own.get(other.wrapping_sub(begin)).copied().unwrap_or_else(|| before[other]);
     let current = graph.conductors(node).map(|(other, weight)| weight * at(other)).sum::<f64>();
-    (right[node] + current) / diagonal[node]
+    (right[node] + current) * inverse[node]
 }

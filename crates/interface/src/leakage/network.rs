@@ -2,10 +2,11 @@
 
 use super::bounds::FlowBounds;
 use super::gradients::Potential;
-use super::graph::Graph;
-use super::tree::{SINK, SOURCE, SpanningForest};
+use super::graph::{Graph, ROWS, WORK_PER_ROW};
+use super::tree::{SINK, SOURCE, SpanningForest, rounded};
 use crate::axis::Layers;
 use crate::disjoint_sets::DisjointSets;
+use numerics::parallel::map;
 use numerics::sum::{Sum, sum};
 
 /// Relative slack of a bound for the rounding of its terms, of which each has a few.
@@ -131,20 +132,29 @@ impl CellNetwork {
         if weight > 0.0 { weight * potential.above_known(node, known) } else { 0.0 }
     }
 
-    /// Currents that flow into the nodes and not out again at these potentials.
-    pub fn residual(&self, potential: &Potential) -> Vec<f64> {
-        let tasks = (0..self.graph.nodes()).step_by(super::graph::ROWS);
-        let parts = numerics::parallel::map(super::graph::WORK_PER_ROW * self.graph.nodes(), tasks, |begin| {
-            let end = (begin + super::graph::ROWS).min(self.graph.nodes());
-            let residual = |node: usize| {
-                let between = self.graph.conductors(node);
-                let out = between.map(|(other, weight)| weight * potential.above(node, other)).sum::<f64>();
-                let edges = [SOURCE, SINK].map(|edge| self.edge_current(node, edge, potential));
-                -(out + edges[0] + edges[1])
+    /// Currents that flow into the nodes and not out again at these potentials, as sums of two numbers.
+    pub fn surplus(&self, potential: &Potential) -> Vec<(f64, f64)> {
+        let tasks = (0..self.graph.nodes()).step_by(ROWS);
+        let parts = map(WORK_PER_ROW * self.graph.nodes(), tasks, |begin| {
+            let end = (begin + ROWS).min(self.graph.nodes());
+            let surplus = |node: usize| {
+                let mut total = Sum::default();
+                for (other, weight) in self.graph.conductors(node) {
+                    total.add(-weight * potential.above(node, other));
+                }
+                for edge in [SOURCE, SINK] {
+                    total.add(-self.edge_current(node, edge, potential));
+                }
+                rounded(total)
             };
-            (begin..end).map(residual).collect::<Vec<f64>>()
+            (begin..end).map(surplus).collect::<Vec<_>>()
         });
         parts.concat()
+    }
+
+    /// The same, rounded.
+    pub fn residual(&self, potential: &Potential) -> Vec<f64> {
+        self.surplus(potential).into_iter().map(|(high, _)| high).collect()
     }
 
     /// The energy of these potentials, which no conductance exceeds (Dirichlet's principle), with its rounding.

@@ -94,37 +94,29 @@ impl SpanningForest {
     /// The sums are carried out to twice the working precision, so that what remains is far below the rounding of a
     /// current.
     pub fn correction(&self, network: &CellNetwork, potential: &Potential) -> Vec<f64> {
-        let mut surplus = vec![(0.0, 0.0); self.parent.len()];
+        let mut surplus = network.surplus(potential);
         let mut correction = vec![0.0; self.parent.len()];
         for &node in self.order.iter().rev() {
-            let node = node as usize;
-            // What the children gave, and what flows in.
-            let (high, low) = surplus[node];
-            let mut total = Sum::from(high);
-            total.add(low);
-            for (other, weight) in network.graph.conductors(node) {
-                total.add(-weight * potential.above(node, other));
-            }
-            for edge in [SOURCE, SINK] {
-                total.add(-network.edge_current(node, edge, potential));
-            }
-            let value = total.value();
-            total.add(-value);
-            let given = (value, total.value());
-            correction[node] = value;
-            if let Some(parent) = surplus.get_mut(self.parent[node] as usize) {
-                // A sum of two such pairs: the first numbers exactly, the rest rounded.
+            let given = surplus[node as usize];
+            correction[node as usize] = given.0;
+            if let Some(parent) = surplus.get_mut(self.parent[node as usize] as usize) {
+                // The first numbers are added exactly, the rest is rounded.
                 let mut sum = Sum::from(parent.0);
                 for term in [given.0, parent.1, given.1] {
                     sum.add(term);
                 }
-                let value = sum.value();
-                sum.add(-value);
-                *parent = (value, sum.value());
+                *parent = rounded(sum);
             }
         }
         correction
     }
+}
+
+/// A sum as its value and what the rounding of it leaves.
+pub(super) fn rounded(mut sum: Sum) -> (f64, f64) {
+    let value = sum.value();
+    sum.add(-value);
+    (value, sum.value())
 }
 
 /// Every conductor once, those to the edges included.
