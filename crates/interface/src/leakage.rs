@@ -239,7 +239,11 @@ pub fn conductance_until(
     let layers = Layers::new(conductivity, along, boundary);
     let [side_along, side_across] = layers.sides;
     if !SIDE_RATIOS.contains(&(side_along / side_across)) {
-        return Err(Error::domain("ratio of the sides of a cell", side_along / side_across, "a number from 1e-20 to 1e20"));
+        return Err(Error::domain(
+            "ratio of the sides of a cell",
+            side_along / side_across,
+            "a number from 1e-20 to 1e20",
+        ));
     }
     let largest = conductivity.values().iter().fold(0.0_f64, |largest, &k| largest.max(k));
     let unit = if largest > 0.0 { largest } else { 1.0 };
@@ -373,8 +377,16 @@ fn solve_network(
 
 impl SheetFlow {
     /// Takes potential and flux of the cells that are connected to both edges.
-    fn take_fields(&mut self, currents: &Currents<'_>, network: &CellNetwork, potential: &Potential, along: FlowAxis) {
+    fn take_fields(
+        &mut self,
+        currents: &Currents<'_>,
+        network: &CellNetwork,
+        potential: &Potential,
+        along: FlowAxis,
+    ) {
         let [side_along, side_across] = network.layers.sides;
+        // The total current is not stationary as its bounds are: it takes the value between them.
+        let share = self.network.middle() / currents.total();
         let [x, y] = &mut self.flux;
         let (flux_along, flux_across) = if along.index() == 0 { (x, y) } else { (y, x) };
         for (node, &cell) in network.cells.iter().enumerate() {
@@ -382,8 +394,8 @@ impl SheetFlow {
             debug_assert!(network.node_of[cell] != NONE);
             let [before, behind, up, down] = currents.over_faces(node);
             self.potential.values_mut()[cell] = potential.high[node];
-            flux_along.values_mut()[cell] = 0.5 * (down - up) / side_across;
-            flux_across.values_mut()[cell] = 0.5 * (behind - before) / side_along;
+            flux_along.values_mut()[cell] = 0.5 * share * (down - up) / side_across;
+            flux_across.values_mut()[cell] = 0.5 * share * (behind - before) / side_along;
         }
     }
 

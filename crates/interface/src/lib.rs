@@ -41,5 +41,7 @@ pub mod leakage;
 pub mod percolation;
 
 pub use axis::FlowAxis;
-pub use leakage::{FlowBounds, FlowOptions, Leakage, SheetFlow, conductance, conductance_until, leakage, leakage_until};
+pub use leakage::{
+    FlowBounds, FlowOptions, Leakage, SheetFlow, conductance, conductance_until, leakage, leakage_until,
+};
 pub use percolation::{Constriction, Percolation, percolation};

@@ -25,17 +25,24 @@ pub(super) struct Aggregates {
 
 /// Pairs of pairs, with the network between them. Cost: O(N).
 pub(super) fn coarsen(fine: &Graph) -> (Aggregates, Graph) {
-    let pairs = pair(fine);
+    let diagonal = fine.diagonal();
+    let pairs = pair(fine, &diagonal);
     let between = contract(fine, &pairs);
-    let pairs_of_pairs = pair(&between);
+    // The finer level smooths its own nodes. Two pairs that are each connected well, but not to each other, would have a
+    // small diagonal between the levels, although no smoother of the finer one takes them apart.
+    let mut together = vec![0.0; pairs.count];
+    for (&pair, diagonal) in pairs.of_node.iter().zip(&diagonal) {
+        together[pair as usize] += diagonal;
+    }
+    let pairs_of_pairs = pair(&between, &together);
     let coarse = contract(&between, &pairs_of_pairs);
     let of_node = pairs.of_node.iter().map(|&pair| pairs_of_pairs.of_node[pair as usize]).collect();
     (Aggregates { of_node, count: pairs_of_pairs.count }, coarse)
 }
 
-/// Pairs of nodes, and nodes that joined one. A node stays alone where no neighbour suits it.
-fn pair(graph: &Graph) -> Aggregates {
-    let diagonal = graph.diagonal();
+/// Pairs of nodes, and nodes that joined one. A node stays alone where no neighbour suits it. `diagonal` has the sum of the
+/// diagonal of the finer level over each node.
+fn pair(graph: &Graph, diagonal: &[f64]) -> Aggregates {
     let mut of_node = vec![NONE; graph.nodes()];
     let mut alone = Vec::new();
     let mut count = 0;
@@ -46,7 +53,7 @@ fn pair(graph: &Graph) -> Aggregates {
         let free = graph.conductors(node).filter(|&(other, _)| other != node && of_node[other] == NONE);
         let mut best = (LARGEST_QUALITY, NONE);
         for (other, weight) in free {
-            let quality = pair_quality(graph, &diagonal, [node, other], weight);
+            let quality = pair_quality(graph, diagonal, [node, other], weight);
             if quality < best.0 {
                 best = (quality, other as u32);
             }
@@ -59,7 +66,7 @@ fn pair(graph: &Graph) -> Aggregates {
         }
         count += 1;
     }
-    join_pairs(graph, &diagonal, &mut of_node, &alone);
+    join_pairs(graph, diagonal, &mut of_node, &alone);
     renumber(of_node)
 }
 
@@ -78,9 +85,12 @@ fn join_pairs(graph: &Graph, diagonal: &[f64], of_node: &mut [u32], alone: &[usi
     }
     for &node in alone {
         let paired = graph.conductors(node).filter(|&(other, _)| !is_alone[other]);
-        let best = paired.fold((0.0, node), |best, (other, weight)| {
-            if weight > best.0 { (weight, other) } else { best }
-        });
+        let best = paired.fold(
+            (0.0, node),
+            |best, (other, weight)| {
+                if weight > best.0 { (weight, other) } else { best }
+            },
+        );
         if best.0 * LEAF_SHARE >= diagonal[node] {
             of_node[node] = of_node[best.1];
         }

@@ -62,7 +62,9 @@ pub(super) fn lower_bound(network: &CellNetwork, conductivity: &[f64], currents:
     for (node, &cell) in network.cells.iter().enumerate() {
         let [before, behind, up, down] = currents.over_faces(node);
         let resistivity = 1.0 / conductivity[cell as usize];
-        for ([a, b], ratio) in [([-before, behind], side_across / side_along), ([-up, down], side_along / side_across)] {
+        for ([a, b], ratio) in
+            [([-before, behind], side_across / side_along), ([-up, down], side_along / side_across)]
+        {
             let resistance = ratio * resistivity;
             dissipation.add(resistance / 3.0 * (a * a + a * b + b * b), a.abs() + b.abs(), resistance);
         }

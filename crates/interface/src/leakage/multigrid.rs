@@ -69,7 +69,8 @@ impl Hierarchy {
             check_stop(stop)?;
             let nodes = graph.nodes();
             let coarser = (nodes > ELIMINATED).then(|| coarsen(&graph));
-            let coarser = coarser.filter(|(aggregates, _)| aggregates.count * SLOWEST < nodes * (SLOWEST - 1));
+            let coarser =
+                coarser.filter(|(aggregates, _)| aggregates.count * SLOWEST < nodes * (SLOWEST - 1));
             let vectors = LevelVectors::new(nodes, levels.is_empty());
             let inverse = graph.diagonal().iter().map(|d| 1.0 / d).collect();
             let Some((aggregates, coarse)) = coarser else {

@@ -94,7 +94,9 @@ impl CellNetwork {
             let cell = cell as usize;
             let begin = graph.neighbours.len();
             for (face, neighbour) in layers.neighbours(cell).into_iter().enumerate() {
-                let Some(neighbour) = neighbour.filter(|&n| n != cell && node_of[n] != NONE) else { continue };
+                let Some(neighbour) = neighbour.filter(|&n| n != cell && node_of[n] != NONE) else {
+                    continue;
+                };
                 let aspect = if face < 2 { across } else { along };
                 let weight = aspect * 2.0 / (1.0 / conductivity[cell] + 1.0 / conductivity[neighbour]);
                 // In a ring of two cells both faces lead to the same cell.
@@ -270,7 +272,8 @@ impl PotentialEnergy {
     /// The energy, with the largest rounding that it may have. The rounding of the potentials has an energy of its own, and
     /// its product with the potentials is bounded after Cauchy and Schwarz.
     pub fn bound(&self) -> f64 {
-        let (energy, rounding) = (self.energy.value(), self.weights * POTENTIAL_ROUNDING * POTENTIAL_ROUNDING);
+        let (energy, rounding) =
+            (self.energy.value(), self.weights * POTENTIAL_ROUNDING * POTENTIAL_ROUNDING);
         (energy + 2.0 * energy.sqrt() * rounding.sqrt() + rounding) * (1.0 + ROUNDING)
     }
 }
