@@ -16,18 +16,11 @@ pub enum FlowAxis {
 
 impl FlowAxis {
     /// The other axis.
+    #[must_use]
     pub fn across(self) -> Self {
         match self {
             Self::X => Self::Y,
             Self::Y => Self::X,
-        }
-    }
-
-    /// 0 for x and 1 for y, as components of fields are counted.
-    pub(crate) fn index(self) -> usize {
-        match self {
-            Self::X => 0,
-            Self::Y => 1,
         }
     }
 }
@@ -35,8 +28,10 @@ impl FlowAxis {
 /// The cells of a map in layers: a layer has all cells at one place along the axis.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Layers {
+    /// The axis.
+    pub axis: FlowAxis,
     /// Number of layers, along the axis.
-    pub layers: usize,
+    pub count: usize,
     /// Number of cells in a layer.
     pub width: usize,
     /// Distance in memory between a cell and that of the next layer, and between neighbours in a layer.
@@ -53,14 +48,16 @@ impl Layers {
         let (columns, rows) = (map.columns(), map.rows());
         match axis {
             FlowAxis::X => Self {
-                layers: columns,
+                axis,
+                count: columns,
                 width: rows,
                 strides: [1, columns],
                 wraps: repeats_y,
                 sides: [map.dx(), map.dy()],
             },
             FlowAxis::Y => Self {
-                layers: rows,
+                axis,
+                count: rows,
                 width: columns,
                 strides: [columns, 1],
                 wraps: repeats_x,
@@ -72,12 +69,12 @@ impl Layers {
     /// Extent across the axis over that along it.
     pub fn ratio(&self) -> f64 {
         let [along, across] = self.sides;
-        self.width as f64 * across / (self.layers as f64 * along)
+        self.width as f64 * across / (self.count as f64 * along)
     }
 
     /// Number of cells.
     pub fn cells(&self) -> usize {
-        self.layers * self.width
+        self.count * self.width
     }
 
     /// Index in memory of the cell at this place of this layer.
@@ -88,7 +85,7 @@ impl Layers {
     /// Layer of a cell, and its place there.
     pub fn place(&self, cell: usize) -> [usize; 2] {
         if self.strides[0] == 1 {
-            [cell % self.layers, cell / self.layers]
+            [cell % self.count, cell / self.count]
         } else {
             [cell / self.width, cell % self.width]
         }
@@ -96,7 +93,7 @@ impl Layers {
 
     /// The cell at a place and layer that may lie outside of the map by one; none where the map ends there.
     pub fn beside(&self, layer: isize, place: isize) -> Option<usize> {
-        let (layers, width) = (self.layers as isize, self.width as isize);
+        let (layers, width) = (self.count.cast_signed(), self.width.cast_signed());
         if layer < 0 || layer >= layers {
             return None;
         }
@@ -107,7 +104,7 @@ impl Layers {
     /// The neighbours over the four faces of a cell: before and behind it in its layer, then in the layer before and
     /// in the next one.
     pub fn neighbours(&self, cell: usize) -> [Option<usize>; 4] {
-        let [layer, place] = self.place(cell).map(|i| i as isize);
+        let [layer, place] = self.place(cell).map(usize::cast_signed);
         [
             self.beside(layer, place - 1),
             self.beside(layer, place + 1),

@@ -254,7 +254,7 @@ pub fn conductance_until(
         if share < NEGLIGIBLE { 0.0 } else { share }
     });
     let scaled: Vec<f64> = scaled.collect();
-    let mut flow = solve(layers, &scaled, (conductivity, along), options, stop)?;
+    let mut flow = solve(layers, &scaled, conductivity, options, stop)?;
     // With potentials between 0 and 1 a cell has at most the energy of four differences of 1.
     let ratios = side_along / side_across + side_across / side_along;
     let extra = 4.0 * neglected as f64 * NEGLIGIBLE * ratios;
@@ -296,7 +296,7 @@ fn check(conductivity: &Field, options: FlowOptions) -> Result<()> {
 fn solve(
     layers: Layers,
     conductivity: &[f64],
-    (map, along): (&Field, FlowAxis),
+    map: &Field,
     options: FlowOptions,
     stop: Stop<'_>,
 ) -> Result<SheetFlow> {
@@ -324,7 +324,7 @@ fn solve(
     let solved = solve_network(&network, &forest, options, stop)?;
     let currents = network.currents(&forest, &solved.potential);
     (flow.network, flow.iterations) = (solved.bounds, solved.steps);
-    flow.take_fields(&currents, &network, &solved.potential, along);
+    flow.take_fields(&currents, &network, &solved.potential);
     if options.continuum {
         let lower = continuum::lower_bound(&network, conductivity, &currents);
         let (upper, steps) = continuum::upper_bound(&network, conductivity, &solved.potential, lower, stop)?;
@@ -355,10 +355,9 @@ fn solve_network(
     let (mut reduction, mut width) = (FIRST_REDUCTION, f64::INFINITY);
     for _ in 0..ROUNDS {
         let residual = network.residual(&potential);
-        let mut correction = vec![0.0; nodes];
-        let graph = &network.graph;
-        best.steps += gradients::solve(graph, &mut hierarchy, residual, (&mut correction, reduction), stop)?;
-        potential.add(&correction);
+        let correction = gradients::solve(&network.graph, &mut hierarchy, residual, reduction, stop)?;
+        best.steps += correction.steps;
+        potential.add(&correction.x);
         drop(correction);
         check_stop(stop)?;
         let bounds = network::bounds(network, &network.currents(forest, &potential));
@@ -377,18 +376,12 @@ fn solve_network(
 
 impl SheetFlow {
     /// Takes potential and flux of the cells that are connected to both edges.
-    fn take_fields(
-        &mut self,
-        currents: &Currents<'_>,
-        network: &CellNetwork,
-        potential: &Potential,
-        along: FlowAxis,
-    ) {
+    fn take_fields(&mut self, currents: &Currents<'_>, network: &CellNetwork, potential: &Potential) {
         let [side_along, side_across] = network.layers.sides;
         // The total current is not stationary as its bounds are: it takes the value between them.
         let share = self.network.middle() / currents.total();
         let [x, y] = &mut self.flux;
-        let (flux_along, flux_across) = if along.index() == 0 { (x, y) } else { (y, x) };
+        let (flux_along, flux_across) = if network.layers.axis == FlowAxis::X { (x, y) } else { (y, x) };
         for (node, &cell) in network.cells.iter().enumerate() {
             let cell = cell as usize;
             debug_assert!(network.node_of[cell] != NONE);

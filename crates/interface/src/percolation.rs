@@ -109,7 +109,7 @@ fn find_constriction(gap: &Field, layers: &Layers) -> Constriction {
         if layer == 0 {
             sets.join(last, first_edge);
         }
-        if layer + 1 == layers.layers {
+        if layer + 1 == layers.count {
             sets.join(last, last_edge);
         }
         if sets.root(first_edge) == sets.root(last_edge) {
@@ -133,7 +133,7 @@ pub(crate) fn leads_along(layers: &Layers, holds: impl Fn(usize) -> bool) -> boo
         if layer == 0 {
             sets.join(cell, first_edge);
         }
-        if layer + 1 == layers.layers {
+        if layer + 1 == layers.count {
             sets.join(cell, last_edge);
         }
     }
@@ -146,10 +146,10 @@ fn leads_across(layers: &Layers, holds: impl Fn(usize) -> bool) -> bool {
     let (first_side, last_side) = (layers.cells(), layers.cells() + 1);
     let mut sets = RingSets::new(layers.cells() + 2);
     let mut winds = false;
-    for layer in 0..layers.layers {
+    for layer in 0..layers.count {
         for place in (0..layers.width).filter(|&place| holds(layers.cell(layer, place))) {
             let cell = layers.cell(layer, place);
-            let (layer, place) = (layer as isize, place as isize);
+            let (layer, place) = (layer.cast_signed(), place.cast_signed());
             for (to_layer, step) in [(layer, 1), (layer + 1, -1), (layer + 1, 0), (layer + 1, 1)] {
                 if let Some(neighbour) = layers.beside(to_layer, place + step).filter(|&cell| holds(cell)) {
                     winds |= sets.join(cell, neighbour, step as i64);
@@ -158,7 +158,7 @@ fn leads_across(layers: &Layers, holds: impl Fn(usize) -> bool) -> bool {
             if !layers.wraps && place == 0 {
                 sets.join(cell, first_side, 0);
             }
-            if !layers.wraps && place + 1 == layers.width as isize {
+            if !layers.wraps && place + 1 == layers.width.cast_signed() {
                 sets.join(cell, last_side, 0);
             }
         }

@@ -95,10 +95,10 @@ pub(super) fn upper_bound(
     let (graph, mut steps) = (cells.graph(cells.exact()), 0);
     for _ in 0..ROUNDS {
         let residual = cells.residual(&potential);
-        let mut correction = vec![0.0; cells.unknowns];
-        steps += solve(&graph, &mut hierarchy, residual, (&mut correction, REDUCTION), stop)?;
+        let correction = solve(&graph, &mut hierarchy, residual, REDUCTION, stop)?;
+        steps += correction.steps;
         let mut next = potential.clone();
-        next.add(&correction);
+        next.add(&correction.x);
         let energy = cells.energy(&next);
         let gain = upper - energy;
         if energy < upper {
@@ -116,26 +116,26 @@ impl<'a> BilinearCells<'a> {
     fn new(network: &'a CellNetwork, conductivity: &'a [f64]) -> Self {
         let layers = &network.layers;
         let width = if layers.wraps { layers.width } else { layers.width + 1 };
-        let strides = if layers.strides[0] == 1 { [1, layers.layers + 1] } else { [width, 1] };
+        let strides = if layers.strides[0] == 1 { [1, layers.count + 1] } else { [width, 1] };
         let is_node = |layer: isize, place: isize| {
             layers.beside(layer, place).is_some_and(|cell| network.node_of[cell] != NONE)
         };
-        let mut first = vec![NONE; (layers.layers + 1) * width];
+        let mut first = vec![NONE; (layers.count + 1) * width];
         // Corners at which two cells touch that share no other cell there. A point carries no flow, so that each of them
         // has a potential of its own.
         let mut is_split = vec![false; first.len()];
         let mut unknowns = 0;
         for corner in 0..first.len() {
             let (layer, place) = if strides[0] == 1 {
-                (corner % (layers.layers + 1), corner / (layers.layers + 1))
+                (corner % (layers.count + 1), corner / (layers.count + 1))
             } else {
                 (corner / width, corner % width)
             };
-            if layer == 0 || layer == layers.layers {
+            if layer == 0 || layer == layers.count {
                 first[corner] = if layer == 0 { SOURCE } else { SINK };
                 continue;
             }
-            let (layer, place) = (layer as isize, place as isize);
+            let (layer, place) = (layer.cast_signed(), place.cast_signed());
             let around = [(-1, -1), (-1, 0), (0, -1), (0, 0)].map(|(l, p)| is_node(layer + l, place + p));
             if around.contains(&true) {
                 first[corner] = unknowns;
@@ -222,12 +222,12 @@ impl<'a> BilinearCells<'a> {
                     if to as usize >= self.unknowns {
                         ground += weight;
                     } else if to as usize != unknown && weight.abs() > 0.0 {
-                        match graph.neighbours[row..].iter().position(|&n| n == to) {
-                            Some(known) => graph.weights[row + known] += weight,
-                            None => {
-                                graph.neighbours.push(to);
-                                graph.weights.push(weight);
-                            }
+                        let known = graph.neighbours[row..].iter().position(|&n| n == to);
+                        if let Some(known) = known {
+                            graph.weights[row + known] += weight;
+                        } else {
+                            graph.neighbours.push(to);
+                            graph.weights.push(weight);
                         }
                     }
                 }

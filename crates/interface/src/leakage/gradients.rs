@@ -55,8 +55,14 @@ impl Potential {
     }
 }
 
-/// Solves `A x = right` by flexible conjugate gradients until `r' M r` is `reduction` of what it was, and leaves the
-/// solution in `x`. Returns the number of steps.
+/// An approximate solution, and the steps that it took.
+#[derive(Debug)]
+pub(super) struct Solution {
+    pub x: Vec<f64>,
+    pub steps: usize,
+}
+
+/// Solves `A x = right` by flexible conjugate gradients until `r' M r` is `reduction` of what it was.
 ///
 /// The directions are made conjugate to the last one explicitly, because the preconditioner is not exactly linear
 /// (Notay, SIAM J. Sci. Comput. 22, 1444 (2000)).
@@ -67,13 +73,13 @@ pub(super) fn solve(
     graph: &Graph,
     hierarchy: &mut Hierarchy,
     right: Vec<f64>,
-    (x, reduction): (&mut [f64], f64),
+    reduction: f64,
     stop: Stop<'_>,
-) -> Result<usize> {
+) -> Result<Solution> {
     let nodes = graph.nodes();
     let mut residual = right;
     let (mut z, mut direction, mut current) = (vec![0.0; nodes], vec![0.0; nodes], vec![0.0; nodes]);
-    x.fill(0.0);
+    let mut solution = Solution { x: vec![0.0; nodes], steps: 0 };
     let (mut start, mut least, mut since) = (0.0, f64::INFINITY, 0);
     let mut energy = 0.0;
     for step in 0..LARGEST_STEPS {
@@ -90,18 +96,19 @@ pub(super) fn solve(
             since += 1;
         }
         if product.is_nan() || product <= reduction * start || since > PATIENCE {
-            return Ok(step);
+            return Ok(solution);
         }
         let share = if step == 0 { 0.0 } else { -dot(&z, &current) / energy };
         combine(&mut direction, share, 1.0, &z);
         graph.multiply(&direction, &mut current);
         energy = dot(&direction, &current);
         if energy.is_nan() || energy <= 0.0 {
-            return Ok(step);
+            return Ok(solution);
         }
         let length = dot(&direction, &residual) / energy;
-        combine(x, 1.0, length, &direction);
+        combine(&mut solution.x, 1.0, length, &direction);
+        solution.steps += 1;
         combine(&mut residual, 1.0, -length, &current);
     }
-    Ok(LARGEST_STEPS)
+    Ok(solution)
 }

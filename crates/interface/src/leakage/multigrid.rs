@@ -177,43 +177,56 @@ fn sweep_down(graph: &Graph, inverse: &[f64], right: &[f64], potential: &mut [f6
 
 /// Gauss-Seidel within each block from the last row to the first; neighbours in other blocks keep their potentials.
 fn sweep_up(graph: &Graph, inverse: &[f64], right: &[f64], potential: &mut [f64], before: &mut [f64]) {
-    if potential.len() > BLOCK {
-        before.copy_from_slice(potential);
-    }
+    copy_for_blocks(potential, before);
+    let before = &*before;
     let tasks = potential.chunks_mut(BLOCK).enumerate();
     map(WORK_PER_ROW * graph.nodes(), tasks, |(block, own)| {
+        let block = SmoothedBlock { graph, inverse, right, before, begin: block * BLOCK };
         for i in (0..own.len()).rev() {
-            own[i] = relaxed(graph, inverse, right, block * BLOCK, own, before, i);
+            own[i] = block.relaxed(own, i);
         }
     });
 }
 
 /// As [`sweep_up`], from the first row to the last.
 fn sweep_again(graph: &Graph, inverse: &[f64], right: &[f64], potential: &mut [f64], before: &mut [f64]) {
-    if potential.len() > BLOCK {
-        before.copy_from_slice(potential);
-    }
+    copy_for_blocks(potential, before);
+    let before = &*before;
     let tasks = potential.chunks_mut(BLOCK).enumerate();
     map(WORK_PER_ROW * graph.nodes(), tasks, |(block, own)| {
+        let block = SmoothedBlock { graph, inverse, right, before, begin: block * BLOCK };
         for i in 0..own.len() {
-            own[i] = relaxed(graph, inverse, right, block * BLOCK, own, before, i);
+            own[i] = block.relaxed(own, i);
         }
     });
 }
 
-/// The potential at which no current is left in a node of a block.
-#[inline]
-fn relaxed(
-    graph: &Graph,
-    inverse: &[f64],
-    right: &[f64],
+/// Keeps the potentials that other blocks see.
+fn copy_for_blocks(potential: &[f64], before: &mut [f64]) {
+    if potential.len() > BLOCK {
+        before.copy_from_slice(potential);
+    }
+}
+
+/// Rows that are smoothed together, from `begin` on.
+struct SmoothedBlock<'a> {
+    graph: &'a Graph,
+    inverse: &'a [f64],
+    right: &'a [f64],
+    /// Potentials of all nodes before the sweep; not read where there is one block.
+    before: &'a [f64],
     begin: usize,
-    own: &[f64],
-    before: &[f64],
-    i: usize,
-) -> f64 {
-    let node = begin + i;
-    let at = |other: usize| own.get(other.wrapping_sub(begin)).copied().unwrap_or_else(|| before[other]);
-    let current = graph.conductors(node).map(|(other, weight)| weight * at(other)).sum::<f64>();
-    (right[node] + current) * inverse[node]
+}
+
+impl SmoothedBlock<'_> {
+    /// The potential at which no current is left in a node of the block.
+    #[inline]
+    fn relaxed(&self, own: &[f64], i: usize) -> f64 {
+        let node = self.begin + i;
+        let at = |other: usize| {
+            own.get(other.wrapping_sub(self.begin)).copied().unwrap_or_else(|| self.before[other])
+        };
+        let current = self.graph.conductors(node).map(|(other, weight)| weight * at(other)).sum::<f64>();
+        (self.right[node] + current) * self.inverse[node]
+    }
 }

@@ -58,7 +58,7 @@ pub(super) fn connections(layers: &Layers, conductivity: &[f64]) -> Vec<Connecte
     }
     let mut connected = vec![Connected { source: false, sink: false }; layers.cells()];
     for place in 0..layers.width {
-        let (first, last) = (layers.cell(0, place), layers.cell(layers.layers - 1, place));
+        let (first, last) = (layers.cell(0, place), layers.cell(layers.count - 1, place));
         if is_open(first) {
             connected[sets.root(first)].source = true;
         }
@@ -114,7 +114,7 @@ impl CellNetwork {
             if layer == 0 {
                 edges[0][node] = half_cell;
             }
-            if layer + 1 == layers.layers {
+            if layer + 1 == layers.count {
                 edges[1][node] = half_cell;
             }
         }
@@ -218,7 +218,7 @@ impl Currents<'_> {
             if face == 2 && layer == 0 {
                 return self.to_edge(node, SOURCE);
             }
-            if face == 3 && layer + 1 == network.layers.layers {
+            if face == 3 && layer + 1 == network.layers.count {
                 return self.to_edge(node, SINK);
             }
             let Some(other) = neighbours[face].map(|n| network.node_of[n]).filter(|&n| n != NONE) else {

@@ -62,15 +62,12 @@ impl SpanningForest {
         let mut order = Vec::with_capacity(nodes);
         for &(_, a, b) in conductors {
             for (node, other) in [(a, b), (b, a)] {
-                match inner(node) {
-                    Some(node) => {
-                        beside[next[node] as usize] = other;
-                        next[node] += 1;
-                    }
-                    None => {
-                        parent[other as usize] = node;
-                        order.push(other);
-                    }
+                if let Some(node) = inner(node) {
+                    beside[next[node] as usize] = other;
+                    next[node] += 1;
+                } else {
+                    parent[other as usize] = node;
+                    order.push(other);
                 }
             }
         }

@@ -20,10 +20,10 @@ fn maps() -> impl Strategy<Value = (Field, FlowAxis, Boundary)> {
 /// Cells of the last layer that a flood from the first one reaches, with coordinates along the axis and across it that
 /// are written out here anew.
 fn flood(gap: &Field, axis: FlowAxis, boundary: Boundary, holds: &dyn Fn(f64) -> bool) -> bool {
-    let (columns, rows) = (gap.columns() as i64, gap.rows() as i64);
+    let (columns, rows) = (gap.columns().cast_signed(), gap.rows().cast_signed());
     let [repeats_x, repeats_y] = boundary.repeats();
     let is_x = axis == FlowAxis::X;
-    let at = |x: i64, y: i64| {
+    let at = |x: isize, y: isize| {
         let x = if repeats_x && !is_x { x.rem_euclid(columns) } else { x };
         let y = if repeats_y && is_x { y.rem_euclid(rows) } else { y };
         let inside = (0..columns).contains(&x) && (0..rows).contains(&y);
@@ -34,8 +34,8 @@ fn flood(gap: &Field, axis: FlowAxis, boundary: Boundary, holds: &dyn Fn(f64) ->
     } else {
         (0..columns).map(|x| (x, 0)).collect::<Vec<_>>()
     };
-    let mut waiting: Vec<(i64, i64)> = starts.into_iter().filter_map(|(x, y)| at(x, y)).collect();
-    let mut seen: std::collections::BTreeSet<(i64, i64)> = waiting.iter().copied().collect();
+    let mut waiting: Vec<(isize, isize)> = starts.into_iter().filter_map(|(x, y)| at(x, y)).collect();
+    let mut seen: std::collections::BTreeSet<(isize, isize)> = waiting.iter().copied().collect();
     while let Some((x, y)) = waiting.pop() {
         if (is_x && x == columns - 1) || (!is_x && y == rows - 1) {
             return true;
