@@ -1,7 +1,8 @@
 //! Leakage through a square map of gaps.
 //!
-//! The arguments are a file of little-endian numbers of 64 bits, row by row, and the boundary across the flow, `periodic`
-//! or `free`. The flow is along y. The program prints the bounds for a square of side 1, and the time.
+//! The arguments are a file of little-endian numbers of 64 bits, row by row, and the boundary across the
+//! flow, `periodic` or `free`. The flow is along y. The program prints the bounds for a square of side 1, and
+//! the time.
 
 use contact_model::{Boundary, Field, never};
 use interface::{FlowAxis, FlowOptions, leakage_until, percolation};

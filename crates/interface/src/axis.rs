@@ -101,8 +101,8 @@ impl Layers {
         (inside || self.wraps).then(|| self.cell(layer as usize, place.rem_euclid(width) as usize))
     }
 
-    /// The neighbours over the four faces of a cell: before and behind it in its layer, then in the layer before and
-    /// in the next one.
+    /// The neighbours over the four faces of a cell: before and behind it in its layer, then in the layer
+    /// before and in the next one.
     pub fn neighbours(&self, cell: usize) -> [Option<usize>; 4] {
         let [layer, place] = self.place(cell).map(usize::cast_signed);
         [
@@ -114,8 +114,8 @@ impl Layers {
     }
 }
 
-/// An error where the memory cannot be had that a map needs with so many bytes for each cell, or where a cell has no
-/// index of 32 bits with room for four faces each.
+/// An error where the memory cannot be had that a map needs with so many bytes for each cell, or where a cell
+/// has no index of 32 bits with room for four faces each.
 ///
 /// # Errors
 /// [`Error::OutOfMemory`].

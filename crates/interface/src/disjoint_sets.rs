@@ -72,8 +72,8 @@ impl RingSets {
         self.root(a).0 == self.root(b).0
     }
 
-    /// Joins the sets of two members, of which the second lies `step` further along the ring. Says whether there is
-    /// now a way round the ring.
+    /// Joins the sets of two members, of which the second lies `step` further along the ring. Says whether
+    /// there is now a way round the ring.
     pub fn join(&mut self, a: usize, b: usize, step: i64) -> bool {
         let ((root_a, to_a), (root_b, to_b)) = (self.root(a), self.root(b));
         if root_a == root_b {

@@ -1,32 +1,35 @@
 //! Flow between opposite edges: leakage of a fluid, conduction of a current.
 //!
-//! How much fluid leaks through an interface, from one edge of the map to the opposite one? In a narrow gap g a fluid
-//! of viscosity eta has the flux `q = -g^3/(12 eta) grad p` per unit width (Reynolds). Where the gap is closed nothing flows. The
-//! same equation with another conductivity describes a current in a film of the thickness of the gap. [`conductance`]
-//! therefore takes any map of conductivities `k >= 0`, and [`leakage`] is [`conductance`] of `g^3`.
+//! How much fluid leaks through an interface, from one edge of the map to the opposite one? In a narrow gap g
+//! a fluid of viscosity eta has the flux `q = -g^3/(12 eta) grad p` per unit width (Reynolds). Where the gap
+//! is closed nothing flows. The same equation with another conductivity describes a current in a film of the
+//! thickness of the gap. [`conductance`] therefore takes any map of conductivities `k >= 0`, and [`leakage`]
+//! is [`conductance`] of `g^3`.
 //!
-//! The **conductance** is the flow per drop of the potential from edge to edge. It has the unit of k: a uniform map of
-//! length L along the flow and width W across it has `k W/L`.
+//! The **conductance** is the flow per drop of the potential from edge to edge. It has the unit of k: a
+//! uniform map of length L along the flow and width W across it has `k W/L`.
 //!
 //! # Bounds on both sides
 //!
-//! No result is a single number. Two variational principles give a bound on each side, and each bound is a certificate:
-//! it holds whatever the solver did, rounding included. An admissible potential has at least the energy of the true
-//! one (Dirichlet). A flux that is free of divergence dissipates at least as much as the true one (Thomson).
+//! No result is a single number. Two variational principles give a bound on each side, and each bound is a
+//! certificate: it holds whatever the solver did, rounding included. An admissible potential has at least the
+//! energy of the true one (Dirichlet). A flux that is free of divergence dissipates at least as much as the
+//! true one (Thomson).
 //!
 //! | bounds | of what | relative width |
 //! |---|---|---|
 //! | [`SheetFlow::network`] | the network of the cells: harmonic means of k at the faces, half cells at both edges (a finite-volume scheme) | 1e-10, or as requested |
 //! | [`SheetFlow::continuum`] | the continuum whose conductivity is constant in each cell | the discretisation error |
 //!
-//! The currents of the network are made free of divergence along a spanning tree of the best conductors. Potentials have
-//! more than double precision. Both matter because the cube of the gap has a contrast of 1e17 in a common contact.
+//! The currents of the network are made free of divergence along a spanning tree of the best conductors.
+//! Potentials have more than double precision. Both matter because the cube of the gap has a contrast of 1e17
+//! in a common contact.
 //!
 //! # How it is solved
 //!
-//! Only cells that are connected to both edges are unknown. Conjugate gradients solve their network, preconditioned by
-//! a hierarchy of aggregates. They start anew from the residual in more than double precision until the bounds are
-//! as close as requested.
+//! Only cells that are connected to both edges are unknown. Conjugate gradients solve their network,
+//! preconditioned by a hierarchy of aggregates. They start anew from the residual in more than double
+//! precision until the bounds are as close as requested.
 
 mod aggregation;
 mod bounds;
@@ -52,7 +55,8 @@ use tree::SpanningForest;
 /// Bytes for each cell at the peak: networks, hierarchy, tree and vectors; more with the continuum.
 const BYTES_PER_CELL: f64 = 400.0;
 const BYTES_WITH_CONTINUUM: f64 = 750.0;
-/// Conductivities below this share of the largest one count as zero; the upper bounds include what they could carry.
+/// Conductivities below this share of the largest one count as zero; the upper bounds include what they could
+/// carry.
 const NEGLIGIBLE: f64 = 1e-200;
 /// Ratios of the sides of a cell for which products neither overflow nor underflow.
 const SIDE_RATIOS: std::ops::RangeInclusive<f64> = 1e-20..=1e20;
@@ -68,8 +72,8 @@ const PROGRESS: f64 = 0.5;
 /// What is computed, and how closely.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FlowOptions {
-    /// Relative width of the bounds of the network at which the solver ends. Where rounding does not allow it, the bounds
-    /// are wider, and hold.
+    /// Relative width of the bounds of the network at which the solver ends. Where rounding does not allow
+    /// it, the bounds are wider, and hold.
     pub tolerance: f64,
     /// Whether the continuum is bounded too, which takes about as long again.
     pub continuum: bool,
@@ -82,19 +86,21 @@ impl Default for FlowOptions {
     }
 }
 
-/// The flow between opposite edges whose potentials differ by 1, the higher one before the first layer of cells.
+/// The flow between opposite edges whose potentials differ by 1, the higher one before the first layer of
+/// cells.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SheetFlow {
     /// Conductance of the network of the cells.
     pub network: FlowBounds,
-    /// Conductance of the continuum with constant conductivity in each cell; `None` where it was not requested.
+    /// Conductance of the continuum with constant conductivity in each cell; `None` where it was not
+    /// requested.
     pub continuum: Option<FlowBounds>,
     /// Potential at the centre of each cell; 0 where no edge is connected to the cell (see `reached`).
     pub potential: Field,
     /// Whether a cell is connected to an edge. The potential is defined in these cells alone.
     pub reached: Vec<bool>,
-    /// Flux in each cell along x and along y, per unit of width: the mean of the currents over opposite faces. Its unit is
-    /// that of k over a length.
+    /// Flux in each cell along x and along y, per unit of width: the mean of the currents over opposite
+    /// faces. Its unit is that of k over a length.
     pub flux: [Field; 2],
     /// Steps of conjugate gradients, those for the continuum included.
     pub iterations: usize,
@@ -103,15 +109,16 @@ pub struct SheetFlow {
 /// Leakage of an incompressible fluid through a gap.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Leakage {
-    /// Bounds of the conductance of `g^3` in the network of the cells, a volume. The flow under a pressure drop is
-    /// [`Leakage::flow_rate`].
+    /// Bounds of the conductance of `g^3` in the network of the cells, a volume. The flow under a pressure
+    /// drop is [`Leakage::flow_rate`].
     pub network: FlowBounds,
     /// The same in the continuum with a constant gap in each cell.
     pub continuum: Option<FlowBounds>,
     /// Mean gap over all cells, where those in contact count as 0.
     pub mean_gap: f64,
-    /// The conductance of the network over that of a smooth gap of the mean gap, `mean_gap^3 W/L` (the pressure flow factor
-    /// of Patir and Cheng, J. Lubr. Technol. 100, 12 (1978)); `None` for a closed interface.
+    /// The conductance of the network over that of a smooth gap of the mean gap, `mean_gap^3 W/L` (the
+    /// pressure flow factor of Patir and Cheng, J. Lubr. Technol. 100, 12 (1978)); `None` for a closed
+    /// interface.
     pub flow_factor: Option<FlowBounds>,
     /// Pressure and flux of `g^3` for a pressure drop of 1, with its bounds.
     pub flow: SheetFlow,
@@ -130,8 +137,8 @@ impl Leakage {
     /// The flow under a pressure drop, `conductance drop/(12 viscosity)`: m^3/s for a gap in m, Pa and Pa s.
     ///
     /// # Errors
-    /// [`Error::Domain`] for a pressure drop that is negative or a viscosity that is not positive, and where the flow
-    /// overflows.
+    /// [`Error::Domain`] for a pressure drop that is negative or a viscosity that is not positive, and where
+    /// the flow overflows.
     pub fn flow_rate(&self, pressure_drop: f64, viscosity: f64) -> Result<FlowRate> {
         if !(pressure_drop.is_finite() && pressure_drop >= 0.0) {
             return Err(Error::of_non_negative("pressure drop", pressure_drop));
@@ -155,12 +162,12 @@ pub fn leakage(gap: &Field, along: FlowAxis, boundary: Boundary) -> Result<Leaka
 
 /// Leakage of an incompressible fluid through a gap, from edge to edge along an axis.
 ///
-/// Cells whose gap is 0 or negative are in contact and carry nothing. The boundary says whether the map repeats across the
-/// axis; its sides are impermeable otherwise. An example is on the [front page](crate).
+/// Cells whose gap is 0 or negative are in contact and carry nothing. The boundary says whether the map
+/// repeats across the axis; its sides are impermeable otherwise. An example is on the [front page](crate).
 ///
 /// # Errors
-/// [`Error::Domain`] for a gap that is infinite, as at undefined points, or not a number, and where the conductance
-/// overflows or underflows; otherwise as [`conductance_until`].
+/// [`Error::Domain`] for a gap that is infinite, as at undefined points, or not a number, and where the
+/// conductance overflows or underflows; otherwise as [`conductance_until`].
 pub fn leakage_until(
     gap: &Field,
     along: FlowAxis,
@@ -202,17 +209,19 @@ pub fn conductance(conductivity: &Field, along: FlowAxis, boundary: Boundary) ->
 
 /// Conductance between opposite edges of a map of conductivities `k >= 0`, with potential and flux.
 ///
-/// `k` is a conductivity of the sheet: the flux per unit of width is `-k` times the gradient of the potential. For a
-/// current in a film of thickness g and resistivity rho it is `g/rho`. Without a path of open cells the conductance is exactly 0.
-/// Conductivities below 1e-200 of the largest one count as 0; the upper bounds include what they could carry.
+/// `k` is a conductivity of the sheet: the flux per unit of width is `-k` times the gradient of the
+/// potential. For a current in a film of thickness g and resistivity rho it is `g/rho`. Without a path of
+/// open cells the conductance is exactly 0. Conductivities below 1e-200 of the largest one count as 0; the
+/// upper bounds include what they could carry.
 ///
 /// # Errors
-/// [`Error::Domain`] for a conductivity that is negative, infinite or not a number, which is named, for cells whose
-/// sides differ by more than a factor of 1e20, for a tolerance that is not positive, and where the conductance overflows or
-/// underflows. [`Error::OutOfMemory`] where the map is too large, [`Error::Stopped`] without a state.
+/// [`Error::Domain`] for a conductivity that is negative, infinite or not a number, which is named, for cells
+/// whose sides differ by more than a factor of 1e20, for a tolerance that is not positive, and where the
+/// conductance overflows or underflows. [`Error::OutOfMemory`] where the map is too large, [`Error::Stopped`]
+/// without a state.
 ///
-/// Cost: O(N) for each step of conjugate gradients, of which there are some tens, and O(N log N) for the tree. The memory
-/// is [`flow_memory`].
+/// Cost: O(N) for each step of conjugate gradients, of which there are some tens, and O(N log N) for the
+/// tree. The memory is [`flow_memory`].
 ///
 /// ```
 /// use contact_model::{Boundary, Field};

@@ -1,8 +1,9 @@
 //! What an interface lets through and what it bears, read off the fields of a contact state.
 //!
-//! Two bodies are in contact, and a solver has found the gap between them. Is the interface tight? If it is not, how
-//! much leaks through it, and which constriction decides? These functions answer from the [`contact_model::Field`]
-//! of the gap alone. They contain no contact solver, so that a gap from a file serves as well.
+//! Two bodies are in contact, and a solver has found the gap between them. Is the interface tight? If it is
+//! not, how much leaks through it, and which constriction decides? These functions answer from the
+//! [`contact_model::Field`] of the gap alone. They contain no contact solver, so that a gap from a file
+//! serves as well.
 //!
 //! | module | contents |
 //! |---|---|
@@ -30,9 +31,10 @@
 //! # Conventions
 //!
 //! * A map has its columns along x and its rows along y, and its cells may be oblong.
-//! * Flow and paths lead between **opposite edges** along a [`FlowAxis`]. They do so even where the map repeats along
-//!   this axis: the two edges are then those of the map. Across the axis cells are neighbours round the edge where
-//!   the map repeats ([`contact_model::Boundary::repeats`]). Elsewhere the sides are impermeable.
+//! * Flow and paths lead between **opposite edges** along a [`FlowAxis`]. They do so even where the map
+//!   repeats along this axis: the two edges are then those of the map. Across the axis cells are neighbours
+//!   round the edge where the map repeats ([`contact_model::Boundary::repeats`]). Elsewhere the sides are
+//!   impermeable.
 //! * Lengths, pressures and viscosities need to fit together; no unit is assumed.
 
 mod axis;

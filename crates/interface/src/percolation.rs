@@ -1,13 +1,15 @@
 //! Percolation of the open cells and of the contact.
 //!
-//! Is there a way through the interface? A cell is open where its gap exceeds a smallest gap `g_min`, and in contact
-//! elsewhere. The interface leaks if open cells lead from one edge to the opposite one. Among all ways the widest one
-//! matters: its narrowest cell, the **critical constriction**, is the narrowest cell that the fluid has to pass. It
-//! decides on the leakage near the percolation threshold, because the flow through a cell varies as the cube of the
-//! gap (Dapp and Mueser, EPL 109, 44001 (2015); Persson and Yang, J. Phys.: Condens. Matter 20, 315011 (2008)).
+//! Is there a way through the interface? A cell is open where its gap exceeds a smallest gap `g_min`, and in
+//! contact elsewhere. The interface leaks if open cells lead from one edge to the opposite one. Among all
+//! ways the widest one matters: its narrowest cell, the **critical constriction**, is the narrowest cell that
+//! the fluid has to pass. It decides on the leakage near the percolation threshold, because the flow through
+//! a cell varies as the cube of the gap (Dapp and Mueser, EPL 109, 44001 (2015); Persson and Yang, J. Phys.:
+//! Condens. Matter 20, 315011 (2008)).
 //!
-//! Open cells are neighbours over an edge. Contact that blocks the way may also touch at corners. With these two
-//! rules exactly one of two statements holds: the open cells lead from edge to edge, or the contact closes the way.
+//! Open cells are neighbours over an edge. Contact that blocks the way may also touch at corners. With these
+//! two rules exactly one of two statements holds: the open cells lead from edge to edge, or the contact
+//! closes the way.
 
 use crate::axis::{FlowAxis, Layers};
 use crate::disjoint_sets::{DisjointSets, RingSets};
@@ -27,35 +29,37 @@ pub struct Constriction {
 /// What leads from one edge of an interface to the opposite one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Percolation {
-    /// Whether open cells, whose gap exceeds `g_min`, lead from edge to edge: neighbours share an edge. It is the
-    /// same as `constriction.gap > g_min`.
+    /// Whether open cells, whose gap exceeds `g_min`, lead from edge to edge: neighbours share an edge. It is
+    /// the same as `constriction.gap > g_min`.
     pub spans: bool,
-    /// The critical constriction, which does not depend on `g_min`. Of several cells with the same gap it is one on
-    /// which the result does not depend otherwise; the choice depends on the map alone.
+    /// The critical constriction, which does not depend on `g_min`. Of several cells with the same gap it is
+    /// one on which the result does not depend otherwise; the choice depends on the map alone.
     pub constriction: Constriction,
     /// Whether cells in contact, whose gap is at most `g_min`, lead from edge to edge along the same axis:
     /// neighbours share an edge.
     pub contact_spans: bool,
-    /// Whether the contact closes the way across the axis, where cells that touch at a corner are neighbours as well.
-    /// It leads from side to side, or round the map where the map repeats across the axis. It is the opposite of
-    /// `spans`, and found independently of it.
+    /// Whether the contact closes the way across the axis, where cells that touch at a corner are neighbours
+    /// as well. It leads from side to side, or round the map where the map repeats across the axis. It is the
+    /// opposite of `spans`, and found independently of it.
     pub contact_blocks: bool,
 }
 
-/// Bytes that [`percolation`] needs for each cell: the order of the cells with their gaps, and two kinds of disjoint
-/// sets one after the other.
+/// Bytes that [`percolation`] needs for each cell: the order of the cells with their gaps, and two kinds of
+/// disjoint sets one after the other.
 const BYTES_PER_CELL: f64 = 20.0;
 
-/// Percolation of the open cells, `gap > g_min`, and of the contact, `gap <= g_min`, from edge to edge along an axis.
+/// Percolation of the open cells, `gap > g_min`, and of the contact, `gap <= g_min`, from edge to edge along
+/// an axis.
 ///
-/// `gap` and `g_min` have the same unit of length. A gap may be infinite, as it is at undefined points: such a cell
-/// is open. The boundary says whether cells are neighbours round the edge across the axis.
+/// `gap` and `g_min` have the same unit of length. A gap may be infinite, as it is at undefined points: such
+/// a cell is open. The boundary says whether cells are neighbours round the edge across the axis.
 ///
 /// # Errors
-/// [`Error::Domain`] for a gap or a `g_min` that is not a number; [`Error::OutOfMemory`] where the map is too large.
+/// [`Error::Domain`] for a gap or a `g_min` that is not a number; [`Error::OutOfMemory`] where the map is too
+/// large.
 ///
-/// Cost: O(N log N) for a map of N cells, to sort them by their gap; everything else takes O(N) in practice, with
-/// disjoint sets. It needs 20 N bytes.
+/// Cost: O(N log N) for a map of N cells, to sort them by their gap; everything else takes O(N) in practice,
+/// with disjoint sets. It needs 20 N bytes.
 ///
 /// ```
 /// use contact_model::{Boundary, Field};
@@ -140,8 +144,8 @@ pub(crate) fn leads_along(layers: &Layers, holds: impl Fn(usize) -> bool) -> boo
     sets.root(first_edge) == sets.root(last_edge)
 }
 
-/// Whether cells of a set that share edges or corners lead from the first place of the layers to the last one, or
-/// round the ring where the layers close.
+/// Whether cells of a set that share edges or corners lead from the first place of the layers to the last
+/// one, or round the ring where the layers close.
 fn leads_across(layers: &Layers, holds: impl Fn(usize) -> bool) -> bool {
     let (first_side, last_side) = (layers.cells(), layers.cells() + 1);
     let mut sets = RingSets::new(layers.cells() + 2);

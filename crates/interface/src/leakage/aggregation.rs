@@ -1,22 +1,25 @@
 //! Nodes that a coarser network takes as one.
 //!
-//! A node is paired with the neighbour to which it is connected best, and pairs are paired again. The conductance
-//! between two aggregates is the sum of all conductances between their nodes, so that a coarser network is a network
-//! again. Which neighbour is the best follows from the quality of a pair after Napov and Notay, SIAM J. Sci. Comput.
-//! 34, A1079 (2012), Eq. 4.3: as long as every aggregate has a quality below a limit, the condition of two levels is
-//! bounded by it, whatever the contrast of conductances.
+//! A node is paired with the neighbour to which it is connected best, and pairs are paired again. The
+//! conductance between two aggregates is the sum of all conductances between their nodes, so that a coarser
+//! network is a network again. Which neighbour is the best follows from the quality of a pair after Napov and
+//! Notay, SIAM J. Sci. Comput. 34, A1079 (2012), Eq. 4.3: as long as every aggregate has a quality below a
+//! limit, the condition of two levels is bounded by it, whatever the contrast of conductances.
 
 use super::graph::Graph;
 
-/// Largest quality of a pair. The bound of the condition of two levels that belongs to it is about this number.
+/// Largest quality of a pair. The bound of the condition of two levels that belongs to it is about this
+/// number.
 const LARGEST_QUALITY: f64 = 8.0;
-/// A node without a partner joins the pair of a neighbour to which at least one part in so many of its conductance
-/// leads. Any number of such nodes may join a pair: the energy between them and the pair is in the conductor itself.
+/// A node without a partner joins the pair of a neighbour to which at least one part in so many of its
+/// conductance leads. Any number of such nodes may join a pair: the energy between them and the pair is in
+/// the conductor itself.
 const LEAF_SHARE: f64 = 4.0;
 /// No aggregate.
 const NONE: u32 = u32::MAX;
 
-/// The aggregate of each node, and the number of aggregates. Aggregates are numbered as their first nodes are.
+/// The aggregate of each node, and the number of aggregates. Aggregates are numbered as their first nodes
+/// are.
 #[derive(Debug)]
 pub(super) struct Aggregates {
     pub of_node: Vec<u32>,
@@ -28,8 +31,8 @@ pub(super) fn coarsen(fine: &Graph) -> (Aggregates, Graph) {
     let diagonal = fine.diagonal();
     let pairs = pair(fine, &diagonal);
     let between = contract(fine, &pairs);
-    // The finer level smooths its own nodes. Two pairs that are each connected well, but not to each other, would have a
-    // small diagonal between the levels, although no smoother of the finer one takes them apart.
+    // The finer level smooths its own nodes. Two pairs that are each connected well, but not to each other,
+    // would have a small diagonal between the levels, although no smoother of the finer one takes them apart.
     let mut together = vec![0.0; pairs.count];
     for (&pair, diagonal) in pairs.of_node.iter().zip(&diagonal) {
         together[pair as usize] += diagonal;
@@ -40,8 +43,8 @@ pub(super) fn coarsen(fine: &Graph) -> (Aggregates, Graph) {
     (Aggregates { of_node, count: pairs_of_pairs.count }, coarse)
 }
 
-/// Pairs of nodes, and nodes that joined one. A node stays alone where no neighbour suits it. `diagonal` has the sum of the
-/// diagonal of the finer level over each node.
+/// Pairs of nodes, and nodes that joined one. A node stays alone where no neighbour suits it. `diagonal` has
+/// the sum of the diagonal of the finer level over each node.
 fn pair(graph: &Graph, diagonal: &[f64]) -> Aggregates {
     let mut of_node = vec![NONE; graph.nodes()];
     let mut alone = Vec::new();

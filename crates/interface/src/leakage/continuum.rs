@@ -1,20 +1,21 @@
 //! Bounds for the continuum whose conductivity is constant in each cell.
 //!
-//! The network replaces the continuum by conductors between centres. Its conductance differs from that of the continuum
-//! by the discretisation error, which two further bounds enclose.
+//! The network replaces the continuum by conductors between centres. Its conductance differs from that of the
+//! continuum by the discretisation error, which two further bounds enclose.
 //!
-//! From above: a continuous potential that has the known values at both edges has at least the energy of the true
-//! one. Here it is bilinear in each cell, with values at the corners of cells. Those of the smallest energy are found
-//! by conjugate gradients. The energy of a cell is that of its differences `d_1` and `d_2` along two opposite sides,
-//! `k (d_1^2 + d_1 d_2 + d_2^2)/3` times the ratio of sides, for both directions. If it is replaced by
-//! `k (d_1^2 + d_2^2)/2`, which is between 1 and 3 times as large, the corners become a network with five-point
-//! stencils. Its hierarchy is the preconditioner, for any contrast and any ratio of sides.
+//! From above: a continuous potential that has the known values at both edges has at least the energy of the
+//! true one. Here it is bilinear in each cell, with values at the corners of cells. Those of the smallest
+//! energy are found by conjugate gradients. The energy of a cell is that of its differences `d_1` and `d_2`
+//! along two opposite sides, `k (d_1^2 + d_1 d_2 + d_2^2)/3` times the ratio of sides, for both directions.
+//! If it is replaced by `k (d_1^2 + d_2^2)/2`, which is between 1 and 3 times as large, the corners become a
+//! network with five-point stencils. Its hierarchy is the preconditioner, for any contrast and any ratio of
+//! sides.
 //!
-//! From below: a flux that is free of divergence dissipates at least as much as the true one. The currents of the
-//! network over the faces of a cell are continued into it linearly (the element of Raviart and Thomas of lowest
-//! order). A cell with the currents a and b over opposite faces dissipates `(a^2 + a b + b^2)/(3 k)` times the ratio
-//! of sides. In the network it dissipates `(a^2 + b^2)/(2 k)`, which is not less. The network therefore underestimates
-//! the conductance of the continuum, and this bound is the better one of the two.
+//! From below: a flux that is free of divergence dissipates at least as much as the true one. The currents of
+//! the network over the faces of a cell are continued into it linearly (the element of Raviart and Thomas of
+//! lowest order). A cell with the currents a and b over opposite faces dissipates `(a^2 + a b + b^2)/(3 k)`
+//! times the ratio of sides. In the network it dissipates `(a^2 + b^2)/(2 k)`, which is not less. The network
+//! therefore underestimates the conductance of the continuum, and this bound is the better one of the two.
 
 use super::gradients::{Potential, solve};
 use super::graph::Graph;
@@ -26,8 +27,8 @@ use std::sync::Arc;
 
 /// Reduction of the squared residual in one round.
 const REDUCTION: f64 = 1e-4;
-/// Rounds end when one of them lowers the bound by less than this share of the distance of both bounds: it is then
-/// as good as the space of bilinear potentials.
+/// Rounds end when one of them lowers the bound by less than this share of the distance of both bounds: it is
+/// then as good as the space of bilinear potentials.
 const SHARE: f64 = 1e-3;
 /// Rounds end, too, when one of them lowers the bound by less than this share of it.
 const LEAST_GAIN: f64 = 1e-10;
@@ -72,8 +73,8 @@ pub(super) fn lower_bound(network: &CellNetwork, conductivity: &[f64], currents:
     dissipation.conductance(currents.total())
 }
 
-/// The bound from above, and the steps of conjugate gradients that it took; `lower` is the bound from below and
-/// `centres` the potentials of the network.
+/// The bound from above, and the steps of conjugate gradients that it took; `lower` is the bound from below
+/// and `centres` the potentials of the network.
 ///
 /// # Errors
 /// [`contact_model::Error::Stopped`].
@@ -121,8 +122,8 @@ impl<'a> BilinearCells<'a> {
             layers.beside(layer, place).is_some_and(|cell| network.node_of[cell] != NONE)
         };
         let mut first = vec![NONE; (layers.count + 1) * width];
-        // Corners at which two cells touch that share no other cell there. A point carries no flow, so that each of them
-        // has a potential of its own.
+        // Corners at which two cells touch that share no other cell there. A point carries no flow, so that
+        // each of them has a potential of its own.
         let mut is_split = vec![false; first.len()];
         let mut unknowns = 0;
         for corner in 0..first.len() {
@@ -163,7 +164,8 @@ impl<'a> BilinearCells<'a> {
         [across / along, along / across]
     }
 
-    /// Conductances with the energy of bilinear potentials. Those between corners of a long side may be negative.
+    /// Conductances with the energy of bilinear potentials. Those between corners of a long side may be
+    /// negative.
     fn exact(&self) -> CornerWeights {
         let [along, across] = self.ratios();
         CornerWeights {

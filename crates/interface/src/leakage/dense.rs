@@ -4,9 +4,9 @@ use super::graph::Graph;
 
 /// Elimination of the nodes of a small network, one after the other.
 ///
-/// A node that is eliminated leaves conductors between its neighbours (star-mesh transform). All numbers are sums,
-/// products and quotients of positive numbers, so that no contrast of conductances spoils a digit (Grassmann, Taksar
-/// and Heyman, Oper. Res. 33, 1107 (1985)).
+/// A node that is eliminated leaves conductors between its neighbours (star-mesh transform). All numbers are
+/// sums, products and quotients of positive numbers, so that no contrast of conductances spoils a digit
+/// (Grassmann, Taksar and Heyman, Oper. Res. 33, 1107 (1985)).
 #[derive(Debug)]
 pub(super) struct Elimination {
     nodes: usize,

@@ -10,8 +10,8 @@ const LARGEST_STEPS: usize = 200;
 /// Steps without a smaller residual after which a round ends.
 const PATIENCE: usize = 20;
 
-/// Potentials as unevaluated sums of two numbers: in a wide pool behind a narrow constriction, potentials differ by less
-/// than the rounding of one.
+/// Potentials as unevaluated sums of two numbers: in a wide pool behind a narrow constriction, potentials
+/// differ by less than the rounding of one.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Potential {
     pub high: Vec<f64>,
@@ -64,8 +64,8 @@ pub(super) struct Solution {
 
 /// Solves `A x = right` by flexible conjugate gradients until `r' M r` is `reduction` of what it was.
 ///
-/// The directions are made conjugate to the last one explicitly, because the preconditioner is not exactly linear
-/// (Notay, SIAM J. Sci. Comput. 22, 1444 (2000)).
+/// The directions are made conjugate to the last one explicitly, because the preconditioner is not exactly
+/// linear (Notay, SIAM J. Sci. Comput. 22, 1444 (2000)).
 ///
 /// # Errors
 /// [`contact_model::Error::Stopped`].

@@ -10,14 +10,14 @@ pub(super) const WORK_PER_ROW: usize = 8;
 /// A network of conductors between nodes of unknown potential, and from these to nodes of known potential.
 ///
 /// The currents out of the nodes at potentials v are `(A v)_i = ground_i v_i + sum_j w_ij (v_i - v_j)`: A is
-/// symmetric. It is evaluated in this form, with differences of potentials, because the entries of its diagonal
-/// would lose small differences between nodes of large conductance.
+/// symmetric. It is evaluated in this form, with differences of potentials, because the entries of its
+/// diagonal would lose small differences between nodes of large conductance.
 #[derive(Debug, Default)]
 pub(super) struct Graph {
     /// Where the entries of each node begin, and the number of entries at last.
     pub offsets: Vec<u32>,
-    /// The node at the other end of each conductor; a conductor stands with both of its nodes, and there is one
-    /// conductor at most between two nodes.
+    /// The node at the other end of each conductor; a conductor stands with both of its nodes, and there is
+    /// one conductor at most between two nodes.
     pub neighbours: Vec<u32>,
     /// The conductance of each conductor.
     pub weights: Vec<f64>,

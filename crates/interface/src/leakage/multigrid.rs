@@ -1,10 +1,11 @@
 //! A hierarchy of coarser networks, as a preconditioner.
 //!
-//! Each level has an aggregate of about four nodes of the level below as a node. On each of them but the finest one,
-//! two steps of conjugate gradients, which are preconditioned by the next coarser level, solve the problem that the
-//! finer one leaves (the K-cycle of Notay, Electron. Trans. Numer. Anal. 37, 123 (2010)). Without these two steps the number of
-//! iterations would grow with the number of levels. Nodes are smoothed by Gauss-Seidel sweeps within fixed blocks of
-//! rows, so that threads can share them and no bit depends on their number.
+//! Each level has an aggregate of about four nodes of the level below as a node. On each of them but the
+//! finest one, two steps of conjugate gradients, which are preconditioned by the next coarser level, solve
+//! the problem that the finer one leaves (the K-cycle of Notay, Electron. Trans. Numer. Anal. 37, 123
+//! (2010)). Without these two steps the number of iterations would grow with the number of levels. Nodes are
+//! smoothed by Gauss-Seidel sweeps within fixed blocks of rows, so that threads can share them and no bit
+//! depends on their number.
 
 use super::aggregation::{Aggregates, coarsen};
 use super::dense::Elimination;
@@ -35,8 +36,8 @@ struct GraphLevel {
     vectors: LevelVectors,
 }
 
-/// Vectors of a level, kept from cycle to cycle. The first four are of the problem that the finer level left, so that
-/// the finest level has none of them.
+/// Vectors of a level, kept from cycle to cycle. The first four are of the problem that the finer level left,
+/// so that the finest level has none of them.
 #[derive(Debug, Default)]
 struct LevelVectors {
     right: Vec<f64>,
@@ -175,7 +176,8 @@ fn sweep_down(graph: &Graph, inverse: &[f64], right: &[f64], potential: &mut [f6
     });
 }
 
-/// Gauss-Seidel within each block from the last row to the first; neighbours in other blocks keep their potentials.
+/// Gauss-Seidel within each block from the last row to the first; neighbours in other blocks keep their
+/// potentials.
 fn sweep_up(graph: &Graph, inverse: &[f64], right: &[f64], potential: &mut [f64], before: &mut [f64]) {
     copy_for_blocks(potential, before);
     let before = &*before;

@@ -11,7 +11,8 @@ use numerics::sum::{Sum, sum};
 
 /// Relative slack of a bound for the rounding of its terms, of which each has a few.
 pub(super) const ROUNDING: f64 = 1e-13;
-/// Rounding of a difference of potentials beyond its own relative one: twice the square of the machine precision.
+/// Rounding of a difference of potentials beyond its own relative one: twice the square of the machine
+/// precision.
 const POTENTIAL_ROUNDING: f64 = 1e-31;
 /// Rounding that sums to twice the working precision leave in a current, as a share of all currents together.
 const CURRENT_ROUNDING: f64 = 1e-29;
@@ -21,9 +22,9 @@ pub(super) const NONE: u32 = u32::MAX;
 
 /// The cells that are connected to both edges, as a network.
 ///
-/// Its nodes are the centres of these cells. Between two centres there is half of each cell, so that the conductance
-/// over a face follows from the harmonic mean of both conductivities. Between a centre and an edge there is half a
-/// cell. Cells that are connected to one edge only have its potential and carry no flow.
+/// Its nodes are the centres of these cells. Between two centres there is half of each cell, so that the
+/// conductance over a face follows from the harmonic mean of both conductivities. Between a centre and an
+/// edge there is half a cell. Cells that are connected to one edge only have its potential and carry no flow.
 #[derive(Debug)]
 pub(super) struct CellNetwork {
     pub layers: Layers,
@@ -159,7 +160,8 @@ impl CellNetwork {
         self.surplus(potential).into_iter().map(|(high, _)| high).collect()
     }
 
-    /// The energy of these potentials, which no conductance exceeds (Dirichlet's principle), with its rounding.
+    /// The energy of these potentials, which no conductance exceeds (Dirichlet's principle), with its
+    /// rounding.
     pub fn upper_bound(&self, potential: &Potential) -> f64 {
         let mut energy = PotentialEnergy::default();
         let mut take = |weight: f64, drop: f64| energy.add(weight * drop * drop, weight);
@@ -236,8 +238,8 @@ impl Currents<'_> {
         sum((0..self.network.graph.nodes()).map(|node| -self.to_edge(node, SOURCE)))
     }
 
-    /// What Thomson's principle makes of these currents: with the total current I and the dissipation W no conductance is
-    /// below `I^2/W`, less its rounding.
+    /// What Thomson's principle makes of these currents: with the total current I and the dissipation W no
+    /// conductance is below `I^2/W`, less its rounding.
     pub fn lower_bound(&self) -> f64 {
         let mut dissipation = Dissipation::default();
         for node in 0..self.network.graph.nodes() {
@@ -269,8 +271,8 @@ impl PotentialEnergy {
         self.weights += weight;
     }
 
-    /// The energy, with the largest rounding that it may have. The rounding of the potentials has an energy of its own, and
-    /// its product with the potentials is bounded after Cauchy and Schwarz.
+    /// The energy, with the largest rounding that it may have. The rounding of the potentials has an energy
+    /// of its own, and its product with the potentials is bounded after Cauchy and Schwarz.
     pub fn bound(&self) -> f64 {
         let (energy, rounding) =
             (self.energy.value(), self.weights * POTENTIAL_ROUNDING * POTENTIAL_ROUNDING);

@@ -5,9 +5,10 @@ use contact_model::Size;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 
-/// Conductance of the network of cells by elimination of one cell after the other (star-mesh transform), which adds,
-/// multiplies and divides positive numbers only and is exact to rounding at any contrast. It writes out the network anew,
-/// and shares no line with the solver. Cost: O(N width^2), with fill-in between cells of a band.
+/// Conductance of the network of cells by elimination of one cell after the other (star-mesh transform),
+/// which adds, multiplies and divides positive numbers only and is exact to rounding at any contrast. It
+/// writes out the network anew, and shares no line with the solver. Cost: O(N width^2), with fill-in between
+/// cells of a band.
 fn eliminated(k: &Field, axis: FlowAxis, boundary: Boundary) -> f64 {
     let [repeats_x, repeats_y] = boundary.repeats();
     let is_x = axis == FlowAxis::X;
@@ -99,7 +100,8 @@ fn assert_conserved(k: &Field, flow: &SheetFlow, axis: FlowAxis) {
         FlowAxis::X => (x, k.columns(), k.dy()),
         FlowAxis::Y => (y, k.rows(), k.dx()),
     };
-    // Means over faces: the flow through every layer is half of that through its two sides, which are all the same.
+    // Means over faces: the flow through every layer is half of that through its two sides, which are all the
+    // same.
     let total = flow.network.middle();
     for layer in 0..layers {
         let through: f64 = match axis {
@@ -115,7 +117,8 @@ proptest! {
 
     #[test]
     fn bounds_hold_at_any_contrast(
-        columns in 1_usize..14, rows in 1_usize..14, seed in 0_u64..1000, decades in 0.0..20.0_f64, open in 0.5..1.0_f64,
+        columns in 1_usize..14, rows in 1_usize..14, seed in 0_u64..1000, decades in 0.0..20.0_f64,
+        open in 0.5..1.0_f64,
         oblong in 0.1..10.0_f64, boundary in proptest::sample::select(Boundary::ALL), is_x: bool,
     ) {
         let axis = if is_x { FlowAxis::X } else { FlowAxis::Y };
@@ -165,12 +168,14 @@ fn rows_in_series_and_strips_side_by_side_are_exact() {
 
 #[test]
 fn a_quarter_of_a_ring_has_its_logarithm() {
-    // A quarter of a ring with the radii a and b has the conductance ln(b/a)/(pi/2) from one end to the other. One end is on
-    // the last column. The other one is on a row of large conductivity, which leads to the first column.
+    // A quarter of a ring with the radii a and b has the conductance ln(b/a)/(pi/2) from one end to the
+    // other. One end is on the last column. The other one is on a row of large conductivity, which leads to
+    // the first column.
     const INNER: f64 = 0.25;
     const OUTER: f64 = 0.75;
     const COLLECTOR: f64 = 1e6;
-    // The circles are staircases of cells: an error of first order in the size of a cell, 0.04 on the finest grid.
+    // The circles are staircases of cells: an error of first order in the size of a cell, 0.04 on the finest
+    // grid.
     const STAIRCASE: f64 = 0.05;
     let exact = (OUTER / INNER).ln() / std::f64::consts::FRAC_PI_2;
     let errors = [16, 32, 64].map(|cells: usize| {
@@ -190,8 +195,9 @@ fn a_quarter_of_a_ring_has_its_logarithm() {
 
 #[test]
 fn a_checkerboard_lies_between_the_bounds_of_the_continuum() {
-    // Squares of 1 and 100, four by four, with insulating sides: 10 exactly (Keller, J. Math. Phys. 5, 548 (1964), by
-    // the duality of the map with itself turned). The bounds converge slowly, because the flux at corners is singular.
+    // Squares of 1 and 100, four by four, with insulating sides: 10 exactly (Keller, J. Math. Phys. 5, 548
+    // (1964), by the duality of the map with itself turned). The bounds converge slowly, because the flux at
+    // corners is singular.
     let board = |cells: usize| {
         field(
             4 * cells,
@@ -206,7 +212,6 @@ fn a_checkerboard_lies_between_the_bounds_of_the_continuum() {
         assert!(bounds.contains(10.0) && flow.network.upper < 10.0, "{bounds:?}");
         assert!(bounds.upper - bounds.lower < last);
         last = bounds.upper - bounds.lower;
-        eprintln!("{cells} {bounds:?} {:?}", flow.network);
     }
 }
 

@@ -8,11 +8,12 @@ use numerics::sum::Sum;
 
 /// A spanning forest of the network whose roots are the two edges of the map.
 ///
-/// It is the one of the largest conductances: the way from any node to an edge along it has the largest possible
-/// smallest conductance. Surplus currents that go along it therefore cost little.
+/// It is the one of the largest conductances: the way from any node to an edge along it has the largest
+/// possible smallest conductance. Surplus currents that go along it therefore cost little.
 #[derive(Debug)]
 pub(super) struct SpanningForest {
-    /// The node that is next to each node on the way to its root; [`SOURCE`] or [`SINK`] where that is an edge.
+    /// The node that is next to each node on the way to its root; [`SOURCE`] or [`SINK`] where that is an
+    /// edge.
     pub parent: Vec<u32>,
     /// All nodes, each one after its parent.
     order: Vec<u32>,
@@ -85,11 +86,11 @@ impl SpanningForest {
         Self { parent, order }
     }
 
-    /// What has to be added to the current from each node to its parent, so that as much flows into every node as out
-    /// of it. The currents on the other conductors stay as they are.
+    /// What has to be added to the current from each node to its parent, so that as much flows into every
+    /// node as out of it. The currents on the other conductors stay as they are.
     ///
-    /// The sums are carried out to twice the working precision, so that what remains is far below the rounding of a
-    /// current.
+    /// The sums are carried out to twice the working precision, so that what remains is far below the
+    /// rounding of a current.
     pub fn correction(&self, network: &CellNetwork, potential: &Potential) -> Vec<f64> {
         let mut surplus = network.surplus(potential);
         let mut correction = vec![0.0; self.parent.len()];

@@ -1,4 +1,5 @@
-//! Percolation against a search by brute force, against duality, and against the threshold of the square lattice.
+//! Percolation against a search by brute force, against duality, and against the threshold of the square
+//! lattice.
 
 use super::*;
 use contact_model::Size;
@@ -17,8 +18,8 @@ fn maps() -> impl Strategy<Value = (Field, FlowAxis, Boundary)> {
     })
 }
 
-/// Cells of the last layer that a flood from the first one reaches, with coordinates along the axis and across it that
-/// are written out here anew.
+/// Cells of the last layer that a flood from the first one reaches, with coordinates along the axis and
+/// across it that are written out here anew.
 fn flood(gap: &Field, axis: FlowAxis, boundary: Boundary, holds: &dyn Fn(f64) -> bool) -> bool {
     let (columns, rows) = (gap.columns().cast_signed(), gap.rows().cast_signed());
     let [repeats_x, repeats_y] = boundary.repeats();
@@ -51,7 +52,9 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 2000, ..ProptestConfig::default() })]
 
     #[test]
-    fn brute_force_finds_the_same_and_exactly_one_of_both_closes((gap, axis, boundary) in maps(), g_min in -1.0..6.0) {
+    fn brute_force_finds_the_same_and_exactly_one_of_both_closes(
+        (gap, axis, boundary) in maps(), g_min in -1.0..6.0,
+    ) {
         let found = percolation(&gap, g_min, axis, boundary).unwrap();
         prop_assert_eq!(found.spans, flood(&gap, axis, boundary, &|g| g > g_min));
         prop_assert_eq!(found.contact_spans, flood(&gap, axis, boundary, &|g| g <= g_min));
@@ -87,9 +90,10 @@ fn uniform(seed: u64) -> f64 {
 
 #[test]
 fn critical_gaps_of_independent_cells_have_the_threshold_of_site_percolation() {
-    // The critical constriction of uniform gaps is where the share 1 - g of open cells is the threshold, 0.592746
-    // (Jacobsen, J. Phys. A 48, 454003 (2015)). On L cells a side it scatters as L^(-3/4): here by about 0.008 for one
-    // map. The mean of 40 maps lies within 0.005 of it in practice, which is four of its standard deviations.
+    // The critical constriction of uniform gaps is where the share 1 - g of open cells is the threshold,
+    // 0.592746 (Jacobsen, J. Phys. A 48, 454003 (2015)). On L cells a side it scatters as L^(-3/4): here by
+    // about 0.008 for one map. The mean of 40 maps lies within 0.005 of it in practice, which is four of its
+    // standard deviations.
     const THRESHOLD: f64 = 0.592_746;
     const MARGIN: f64 = 0.005;
     let cells = 256;
@@ -117,7 +121,8 @@ fn infinite_gaps_are_open_and_numbers_are_needed() {
 
 #[test]
 fn contact_at_corners_closes_a_ring() {
-    // Contact in two rows, now in one and now in the other, winds round the map along x and touches at corners alone.
+    // Contact in two rows, now in one and now in the other, winds round the map along x and touches at
+    // corners alone.
     let gap =
         Field::new(4, 1.0, (0..16).map(|cell| f64::from(![0, 5, 2, 7].contains(&cell))).collect()).unwrap();
     for boundary in Boundary::ALL {
