@@ -30,6 +30,27 @@
 //! Only cells that are connected to both edges are unknown. Conjugate gradients solve their network,
 //! preconditioned by a hierarchy of aggregates. They start anew from the residual in more than double
 //! precision until the bounds are as close as requested.
+//!
+//! # Accuracy and speed
+//!
+//! The maps of this table have rough gaps of which 36 % are closed, and a contrast of 1e14 or more (the
+//! script is in `tests/data`). Times are those of two cores of a 2.5 GHz Xeon.
+//!
+//! | cells | steps | time | with the continuum | width of the continuum |
+//! |---|---|---|---|---|
+//! | 256 x 256 | 15 | 0.2 s | 0.3 s | 2 % |
+//! | 512 x 512 | 17 | 0.6 s | 1.0 s | 0.9 % |
+//! | 1024 x 1024 | 18 | 2.6 s | 3.8 s | 0.04 % |
+//! | 2048 x 2048 | 20 | 11 s | 17 s | 0.015 % |
+//!
+//! The last map takes 1.4 GB. The width of the continuum depends on the map: where conductivities jump at
+//! corners, as on a checkerboard, the bounds of the continuum converge slowly.
+//!
+//! # What it does not do
+//!
+//! The flow is that of Reynolds: viscous, incompressible, and in gaps whose slopes are small. The bound of
+//! the continuum from below takes the currents of the network as they are. The smallest dissipation of such a
+//! flux would be a few per cent less on a checkerboard of contrast 100, and hardly less on a rough gap.
 
 mod aggregation;
 mod bounds;
