@@ -33,18 +33,19 @@
 //!
 //! # Accuracy and speed
 //!
-//! The maps of this table have rough gaps of which 36 % are closed, and a contrast of 1e14 or more (the
-//! script is in `tests/data`). Times are those of two cores of a 2.5 GHz Xeon.
+//! The maps of this table are rough gaps of which 36 % are closed; their conductivities have contrasts from
+//! 4e15 to 1e21 (the script is in `tests/data`). Times are those of two cores of an AMD EPYC.
 //!
 //! | cells | steps | time | with the continuum | width of the continuum |
 //! |---|---|---|---|---|
-//! | 256 x 256 | 15 | 0.2 s | 0.3 s | 2 % |
-//! | 512 x 512 | 17 | 0.6 s | 1.0 s | 0.9 % |
-//! | 1024 x 1024 | 18 | 2.6 s | 3.8 s | 0.04 % |
-//! | 2048 x 2048 | 20 | 11 s | 17 s | 0.015 % |
+//! | 256 x 256 | 15 | 0.1 s | 0.2 s | 2 % |
+//! | 512 x 512 | 17 | 0.5 s | 0.8 s | 0.9 % |
+//! | 1024 x 1024 | 18 | 2.0 s | 3.5 s | 0.04 % |
+//! | 2048 x 2048 | 20 | 9 s | 16 s | 0.015 % |
 //!
-//! The last map takes 1.4 GB. The width of the continuum depends on the map: where conductivities jump at
-//! corners, as on a checkerboard, the bounds of the continuum converge slowly.
+//! Gaps that are independent from cell to cell and cover six decades take 108 steps on 1024 cells a side. The
+//! last map of the table takes 1.4 GB. The width of the continuum depends on the map: where conductivities
+//! jump at corners, as on a checkerboard, the bounds of the continuum converge slowly.
 //!
 //! # What it does not do
 //!
@@ -73,9 +74,10 @@ use network::{CellNetwork, Currents, NONE};
 use numerics::sum::sum;
 use tree::SpanningForest;
 
-/// Bytes for each cell at the peak: networks, hierarchy, tree and vectors; more with the continuum.
-const BYTES_PER_CELL: f64 = 400.0;
-const BYTES_WITH_CONTINUUM: f64 = 750.0;
+/// Bytes for each cell at the peak: networks, hierarchy, tree and vectors; more with the continuum. On 2048
+/// cells a side, all of them open, 274 and 490 were measured.
+const BYTES_PER_CELL: f64 = 300.0;
+const BYTES_WITH_CONTINUUM: f64 = 550.0;
 /// Conductivities below this share of the largest one count as zero; the upper bounds include what they could
 /// carry.
 const NEGLIGIBLE: f64 = 1e-200;

@@ -327,9 +327,9 @@ fn a_smooth_gap_has_a_flow_factor_of_one_and_a_flow_in_si() {
 
 #[test]
 fn a_map_beyond_the_memory_is_refused_and_a_stop_is_heard() {
-    assert!(flow_memory(40_000, FlowOptions::default()) > 1e12);
+    assert!(flow_memory(40_000, FlowOptions::default()) > 5e11);
     let refused = check_memory(contact_model::Cells::from(40_000), BYTES_PER_CELL);
-    assert!(matches!(refused, Err(Error::OutOfMemory { bytes, .. }) if bytes > 6e11), "{refused:?}");
+    assert!(matches!(refused, Err(Error::OutOfMemory { bytes, .. }) if bytes > 4e11), "{refused:?}");
     let gap = field(30, 30, |x, y| 1.0 + uniform((x + 30 * y) as u64));
     let stopped = leakage_until(&gap, FlowAxis::X, Boundary::Free, FlowOptions::default(), &|| true);
     assert!(matches!(stopped, Err(Error::Stopped { .. })));
