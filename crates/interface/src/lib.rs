@@ -44,6 +44,7 @@ pub mod percolation;
 
 pub use axis::FlowAxis;
 pub use leakage::{
-    FlowBounds, FlowOptions, Leakage, SheetFlow, conductance, conductance_until, leakage, leakage_until,
+    FlowBounds, FlowOptions, FlowRate, Leakage, SheetFlow, conductance, conductance_until, flow_memory,
+    leakage, leakage_until,
 };
 pub use percolation::{Constriction, Percolation, percolation};

@@ -3,8 +3,10 @@
 //! A node is paired with the neighbour to which it is connected best, and pairs are paired again. The
 //! conductance between two aggregates is the sum of all conductances between their nodes, so that a coarser
 //! network is a network again. Which neighbour is the best follows from the quality of a pair after Napov and
-//! Notay, SIAM J. Sci. Comput. 34, A1079 (2012), Eq. 4.3: as long as every aggregate has a quality below a
-//! limit, the condition of two levels is bounded by it, whatever the contrast of conductances.
+//! Notay, SIAM J. Sci. Comput. 34, A1079 (2012): a limit of the quality of all aggregates bounds the
+//! condition of two levels, whatever the contrast of conductances. Pairs of pairs and nodes that join a pair
+//! are judged by simpler rules in the same spirit. Nothing is proved for them; numbers of steps were
+//! measured.
 
 use super::graph::Graph;
 
