@@ -1,14 +1,15 @@
 //! What an interface lets through and what it bears, read off the fields of a contact state.
 //!
 //! Two bodies are in contact, and a solver has found the gap between them. Is the interface tight? If it is
-//! not, how much leaks through it, and which constriction decides? These functions answer from the
-//! [`contact_model::Field`] of the gap alone. They contain no contact solver, so that a gap from a file
-//! serves as well.
+//! not, how much leaks through it, and which constriction decides? And where below the surface does the
+//! material yield first? These functions answer from the [`contact_model::Field`] of the gap, or of the
+//! pressure, alone. They contain no contact solver, so that a field from a file serves as well.
 //!
 //! | module | contents |
 //! |---|---|
 //! | [`percolation`](mod@percolation) | whether the open cells, or the cells in contact, lead from edge to edge, and the critical constriction |
 //! | [`leakage`](mod@leakage) | flow of a fluid or of a current between opposite edges, with bounds on both sides |
+//! | [`stress`] | the stress below the surface, and where it is largest |
 //!
 //! ```
 //! use contact_model::{Boundary, Field};
@@ -41,6 +42,7 @@ mod axis;
 mod disjoint_sets;
 pub mod leakage;
 pub mod percolation;
+pub mod stress;
 
 pub use axis::FlowAxis;
 pub use leakage::{
