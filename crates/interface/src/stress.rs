@@ -38,3 +38,6 @@ pub fn stress_at_depths(
     let plan = SubsurfaceStress::new(load, body)?;
     depths.iter().map(|&depth| plan.at_depth(depth, stop)).collect()
 }
+
+#[cfg(test)]
+mod tests;

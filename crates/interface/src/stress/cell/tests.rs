@@ -156,6 +156,26 @@ fn far_away_every_rule_is_exact() {
 }
 
 #[test]
+fn oblong_cells_lose_no_digits_at_any_distance() {
+    let sixteen = Gauss::<16>::new();
+    let cell = RectangularCell::new([100.0, 0.01]);
+    // Rows of small squares, each by a rule that is exact there.
+    let part = RectangularCell::new([0.1, 0.01]);
+    for place in [[0.0, 0.0, 1.0], [3.0, 0.2, 0.0], [49.0, 1.0, 2.0], [60.0, 0.0, 0.0], [0.0, 300.0, 4.0]] {
+        let mut expected = Potentials::default();
+        for i in 0..1000 {
+            let x = place[0] - 0.1 * (f64::from(i) - 499.5);
+            expected.add(1.0, &part.quadrature(&sixteen, [x, place[1], place[2]]));
+        }
+        let expected = stress_of(&expected, 0.3);
+        let largest =
+            expected.as_flattened().iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+        let difference = largest_difference(stress_of(&cell.potentials(place), 0.3), expected);
+        assert!(difference < 1e-13 * largest, "{place:?}: {difference:e} of {largest:e}");
+    }
+}
+
+#[test]
 fn values_at_the_surface_are_finite_and_those_of_the_load() {
     let cell = RectangularCell::new([2.0, 0.5]);
     for (x, y, share) in [
