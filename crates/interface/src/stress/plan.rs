@@ -224,7 +224,7 @@ impl<'a> SubsurfaceStress<'a> {
         let of_cells = self.body.periodic == PeriodicLoad::Cells;
         let cell_waves = CellWaves::new(sides, poisson);
         let aliases = if of_cells {
-            let aliases = cell_waves.aliases([&numbers[0], &numbers[1]], z, stop);
+            let aliases = cell_waves.aliases([&numbers[0], &numbers[1]], z, count, stop);
             aliases.map_err(Interrupted::without_state)?
         } else {
             None
@@ -233,18 +233,17 @@ impl<'a> SubsurfaceStress<'a> {
         let mut threads = vec![(); threads_for(PAIR * numbers[0].len() * half)];
         let columns = values.chunks_mut(half * count).enumerate();
         let all = for_each_until(&mut threads, columns, &|| stop.stops(), |(), (mx, column)| {
+            if let Some(aliases) = &aliases {
+                aliases.add(mx, column);
+            }
             for (my, to) in column.chunks_exact_mut(count).enumerate().skip(usize::from(mx == 0)) {
                 let k = [numbers[0][mx], numbers[1][my]];
-                let mut kernels = wave(k, z).kernels(poisson);
-                if let Some(aliases) = &aliases {
-                    aliases.add(mx, my, &mut kernels);
-                }
                 let factor = if of_cells { cell_waves.mean_over_cell(k) } else { 1.0 };
                 let shortest = [2 * mx == self.grid.columns, 2 * my == self.grid.rows];
-                for ((to, kernel), odd) in to.iter_mut().zip(kernels).zip(ODD) {
+                for ((to, kernel), odd) in to.iter_mut().zip(wave(k, z).kernels(poisson)).zip(ODD) {
                     // At the centres of cells the shortest wave vanishes a quarter of its length further.
                     let vanishes = (odd[0] && shortest[0]) || (odd[1] && shortest[1]);
-                    *to = if vanishes { 0.0 } else { factor * kernel };
+                    *to = if vanishes { 0.0 } else { factor * (*to + kernel) };
                 }
             }
         });

@@ -15,7 +15,7 @@
 
 use super::potentials::{KERNELS, ODD, Potentials};
 use contact_model::{Interrupted, Stop};
-use numerics::parallel::{for_each_until, threads_for};
+use numerics::parallel::{for_each_until, threads_for, widest};
 use std::f64::consts::PI;
 
 /// Terms of an alternating sum that are added as they are, before those with weights.
@@ -87,7 +87,9 @@ pub struct CellWaves {
 #[derive(Debug)]
 pub struct Aliases {
     along_x: Interpolation,
-    /// `values[(node * rows + my) * KERNELS + kernel]` at the nodes along x and the waves along y.
+    /// Number of influence functions.
+    count: usize,
+    /// `values[(node * rows + my) * count + kernel]` at the nodes along x and the waves along y.
     values: Vec<f64>,
     rows: usize,
 }
@@ -121,7 +123,7 @@ impl CellWaves {
 
     /// The aliases of a wave along one axis that have not decayed at a depth: number, wave number and weight.
     fn along(&self, [k, side]: [f64; 2], z: f64) -> impl Iterator<Item = (i32, f64, f64)> + '_ {
-        let terms = self.weights.len() as i32;
+        let terms = (PLAIN + WEIGHTED) as i32;
         (1 - terms..terms).filter_map(move |m| {
             if m == 0 {
                 return Some((0, k, 1.0));
@@ -132,12 +134,13 @@ impl CellWaves {
         })
     }
 
-    /// The other aliases of all waves of a grid at one depth, with the wave numbers >= 0 along each axis; `None` where
-    /// they are smaller than the rounding of the waves themselves.
+    /// The first `count` influence functions of the other aliases of all waves of a grid at one depth, with the wave
+    /// numbers >= 0 along each axis; `None` where they are smaller than the rounding of the waves themselves.
     pub fn aliases(
         &self,
         waves: [&[f64]; 2],
         z: f64,
+        count: usize,
         stop: Stop<'_>,
     ) -> Result<Option<Aliases>, Interrupted> {
         let shortest = self.sides.map(|side| PI / side);
@@ -148,26 +151,27 @@ impl CellWaves {
         let along_x = Interpolation::new(waves[0], shortest[0], a / b);
         let along_y = Interpolation::new(waves[1], shortest[1], b / a);
         let (nodes, rows) = (along_y.nodes.len(), waves[1].len());
-        let mut values = vec![0.0; along_x.nodes.len() * rows * KERNELS];
+        let mut values = vec![0.0; along_x.nodes.len() * rows * count];
         let mut at_nodes = vec![vec![[0.0; KERNELS]; nodes]; threads_for(usize::MAX)];
-        let tasks = along_x.nodes.iter().zip(values.chunks_exact_mut(rows * KERNELS));
+        let tasks = along_x.nodes.iter().zip(values.chunks_exact_mut(rows * count));
         let all = for_each_until(&mut at_nodes, tasks, &|| stop.stops(), |at_nodes, (&kx, column)| {
             for (to, &ky) in at_nodes.iter_mut().zip(&along_y.nodes) {
                 *to = self.other_aliases([kx, ky], z);
             }
-            for (my, to) in column.chunks_exact_mut(KERNELS).enumerate() {
-                along_y.add_at(my, 1, |node| &at_nodes[node], to);
+            for (my, to) in column.chunks_exact_mut(count).enumerate() {
+                along_y.add_at(my, 1, |node| &at_nodes[node][..count], (count, to));
             }
         });
-        if all { Ok(Some(Aliases { along_x, values, rows })) } else { Err(Interrupted) }
+        if all { Ok(Some(Aliases { along_x, count, values, rows })) } else { Err(Interrupted) }
     }
 }
 
 impl Aliases {
-    /// Adds the influence functions of the other aliases of a wave of the grid.
-    pub fn add(&self, mx: usize, my: usize, to: &mut [f64; KERNELS]) {
-        let from = |node: usize| &self.values[(node * self.rows + my) * KERNELS..];
-        self.along_x.add_at(mx, 0, from, to);
+    /// Adds the influence functions at all waves along y, `[my * count + kernel]`, for wave mx along x.
+    pub fn add(&self, mx: usize, to: &mut [f64]) {
+        let length = self.rows * self.count;
+        let from = |node: usize| &self.values[node * length..][..length];
+        widest(|| self.along_x.add_at(mx, 0, from, (self.count, to)));
     }
 }
 
@@ -193,17 +197,20 @@ impl Interpolation {
         let count = count as usize;
         let angles: Vec<f64> = (0..count).map(|j| PI * (j as f64 + 0.5) / (2 * count) as f64).collect();
         let nodes = angles.iter().map(|angle| shortest * angle.cos()).collect();
+        // Chebyshev polynomials of even and of odd degree.
+        let polynomials =
+            |angle: f64, odd: usize| (0..count).map(move |k| ((2 * k + odd) as f64 * angle).cos());
         let weights = [0, 1].map(|odd| {
+            let at_nodes: Vec<f64> = angles.iter().flat_map(|angle| polynomials(*angle, odd)).collect();
             let mut weights = Vec::with_capacity(waves.len() * count);
             for wave in waves {
-                let angle = (wave / shortest).min(1.0).acos();
-                for node in &angles {
-                    let term = |k: usize| {
-                        let k = (2 * k + odd) as f64;
-                        let half = if k > 0.0 { 1.0 } else { 0.5 };
-                        half * (k * node).cos() * (k * angle).cos()
-                    };
-                    weights.push(2.0 / count as f64 * (0..count).map(term).sum::<f64>());
+                let mut at_wave: Vec<f64> = polynomials((wave / shortest).min(1.0).acos(), odd).collect();
+                if odd == 0 {
+                    at_wave[0] *= 0.5;
+                }
+                for at_node in at_nodes.chunks_exact(count) {
+                    let product: f64 = at_wave.iter().zip(at_node).map(|(a, b)| a * b).sum();
+                    weights.push(2.0 / count as f64 * product);
                 }
             }
             weights
@@ -211,8 +218,16 @@ impl Interpolation {
         Self { nodes, weights: Some(weights) }
     }
 
-    /// Adds the values at a wave; `axis` says in which wave number the parity of the influence functions counts.
-    fn add_at<'a>(&self, wave: usize, axis: usize, values: impl Fn(usize) -> &'a [f64], to: &mut [f64]) {
+    /// Adds the values at a wave, for one or many sets of `count` influence functions; `axis` says along which axis
+    /// their parity counts.
+    #[inline(always)]
+    fn add_at<'a>(
+        &self,
+        wave: usize,
+        axis: usize,
+        values: impl Fn(usize) -> &'a [f64],
+        (count, to): (usize, &mut [f64]),
+    ) {
         let Some(weights) = &self.weights else {
             for (to, value) in to.iter_mut().zip(values(wave)) {
                 *to += value;
@@ -221,8 +236,11 @@ impl Interpolation {
         };
         for node in 0..self.nodes.len() {
             let both = [0, 1].map(|odd| weights[odd][wave * self.nodes.len() + node]);
-            for ((to, value), odd) in to.iter_mut().zip(values(node)).zip(&ODD) {
-                *to += both[usize::from(odd[axis])] * value;
+            let of_kernels = ODD.map(|odd| both[usize::from(odd[axis])]);
+            for (to, from) in to.chunks_exact_mut(count).zip(values(node).chunks_exact(count)) {
+                for ((to, value), weight) in to.iter_mut().zip(from).zip(&of_kernels) {
+                    *to += weight * value;
+                }
             }
         }
     }

@@ -4,6 +4,8 @@ use super::*;
 
 /// What extrapolation to infinitely many copies leaves.
 const EXTRAPOLATED: f64 = 3e-5;
+/// The same of copies along one axis, of which there are more.
+const ALONG_A_LINE: f64 = 5e-6;
 
 const CELLS: [usize; 2] = [4, 3];
 const SIZE: [f64; 2] = [2.0, 1.5];
@@ -47,8 +49,8 @@ fn a_periodic_map_is_a_free_one_with_many_copies() {
     let mean = changed(&load, |_, field| {
         Field::new(CELLS, SIZE, vec![field.values().iter().sum::<f64>() / 12.0; 12]).unwrap()
     });
-    for nu in [0.0, 0.3, 0.5] {
-        for depth in [0.0, 0.01, 0.2, 0.9] {
+    for nu in [0.0, 0.45] {
+        for depth in [0.0, 0.2, 0.9] {
             let body = StressedBody { boundary: Boundary::Periodic, ..StressedBody::new(nu) };
             let of_mean = at_depth(&mean, body, depth);
             let varying: Vec<[f64; 6]> = at_depth(&load, body, depth)
@@ -111,7 +113,7 @@ fn a_map_that_repeats_itself_along_a_line_is_a_free_one_with_many_copies() {
                 let ratio = errors[2] / errors[3];
                 assert!((3.3..8.0).contains(&ratio), "{boundary:?} {nu} {depth}: {errors:?}");
                 let error = relative_difference(&expected, &extrapolated(&sums, &copies));
-                assert!(error < 0.1 * EXTRAPOLATED, "{boundary:?} {nu} {depth}: {error:e}");
+                assert!(error < ALONG_A_LINE, "{boundary:?} {nu} {depth}: {error:e}");
             }
         }
     }
