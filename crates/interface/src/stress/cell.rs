@@ -3,15 +3,16 @@
 use super::potentials::Potentials;
 use numerics::gauss::Gauss;
 
-/// Smallest depth, in sides of a cell, that a logarithm sees. A traction that jumps at the edge of a cell causes an
-/// infinite stress on this edge; this keeps it finite.
+/// Smallest depth, in sides of a cell, that a logarithm sees. A traction that jumps at the edge of a cell
+/// causes an infinite stress on this edge; this keeps it finite.
 const SMALLEST_DEPTH: f64 = 1e-12;
 /// Depths below this, in sides of a cell, are taken as 0: their squares leave the range of f64.
 const SURFACE: f64 = 1e-100;
 
-/// Distances, in longer sides of the cell, from which on a rule with 6, 4, 3 and 2 points a side replaces the closed
-/// form. Of a kernel that falls as 1/r^2 the rule of n points leaves about `(2n + 1)! (n!)^4/((2n + 1) (2n)!^3) r^-2n`
-/// of its own value, which is 1e-14 or less at these distances, and the closed form loses `r^2` of its digits.
+/// Distances, in longer sides of the cell, from which on a rule with 6, 4, 3 and 2 points a side replaces the
+/// closed form. Of a kernel that falls as 1/r^2 the rule of n points leaves about `(2n + 1)! (n!)^4/((2n + 1)
+/// (2n)!^3) r^-2n` of its own value, which is 1e-14 or less at these distances, and the closed form loses
+/// `r^2` of its digits.
 const RULES_FROM: [f64; 4] = [8.0, 24.0, 100.0, 1500.0];
 
 /// A cell of sides a and b, in any unit of length. Positions are measured from its centre.
@@ -30,8 +31,8 @@ impl RectangularCell {
         Self { a, b, six: Gauss::new(), four: Gauss::new(), three: Gauss::new(), two: Gauss::new() }
     }
 
-    /// The potentials at a point whose depth is not negative. The error is about 1e-15 of the largest stress under
-    /// the cell, and 1e-13 of the stress at the same distance.
+    /// The potentials at a point whose depth is not negative. The error is about 1e-15 of the largest stress
+    /// under the cell, and 1e-13 of the stress at the same distance.
     pub fn potentials(&self, at: [f64; 3]) -> Potentials {
         let distance = length(at) / self.a.max(self.b);
         let rule = RULES_FROM.iter().filter(|from| distance >= **from).count();
@@ -45,8 +46,9 @@ impl RectangularCell {
         }
     }
 
-    /// Whether the cell is oblong and the point so far from its edge, in shorter sides, that a rule would hold if the
-    /// cell were a square. The closed form, made for the longer side, then loses digits in the shorter one.
+    /// Whether the cell is oblong and the point so far from its edge, in shorter sides, that a rule would
+    /// hold if the cell were a square. The closed form, made for the longer side, then loses digits in the
+    /// shorter one.
     fn is_long_from(&self, [x, y, z]: [f64; 3]) -> bool {
         let outside = |along: f64, side: f64| (along.abs() - 0.5 * side).max(0.0);
         let clear = length([outside(x, self.a), outside(y, self.b), z]);
@@ -120,8 +122,8 @@ pub fn point(at: [f64; 3]) -> Potentials {
     Potentials(normalised.map(|derivative| derivative / r / r))
 }
 
-/// The functions whose mixed derivatives are the potentials of a point force, but for functions of x or of y alone,
-/// which no sum over corners keeps. They are chosen such that no two terms cancel in any of them.
+/// The functions whose mixed derivatives are the potentials of a point force, but for functions of x or of y
+/// alone, which no sum over corners keeps. They are chosen such that no two terms cancel in any of them.
 fn corner(x: f64, y: f64, z: f64) -> Potentials {
     let z = if z < SURFACE { 0.0 } else { z };
     let r = length([x, y, z]);
@@ -162,11 +164,12 @@ fn corner(x: f64, y: f64, z: f64) -> Potentials {
     Potentials(derivatives)
 }
 
-/// The potentials under a unit load on a strip of width b that is endless along x, at the distance y from its middle:
-/// plane strain, and antiplane shear of a traction along x. The potential of an endless strip is infinite; what is
-/// the same everywhere is left out of it, and no stress depends on that.
+/// The potentials under a unit load on a strip of width b that is endless along x, at the distance y from its
+/// middle: plane strain, and antiplane shear of a traction along x. The potential of an endless strip is
+/// infinite; what is the same everywhere is left out of it, and no stress depends on that.
 ///
-/// The differences between the edges are written without cancellation, so that they are exact to rounding far away.
+/// The differences between the edges are written without cancellation, so that they are exact to rounding far
+/// away.
 pub fn strip(y: f64, z: f64, b: f64) -> Potentials {
     let (north, south) = (y + 0.5 * b, y - 0.5 * b);
     let z = if z < SURFACE { 0.0 } else { z };

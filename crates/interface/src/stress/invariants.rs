@@ -1,8 +1,10 @@
 //! Numbers of a stress that do not depend on the axes.
 
-/// Von Mises' equivalent stress, `sqrt(((xx - yy)^2 + (yy - zz)^2 + (zz - xx)^2)/2 + 3 (yz^2 + xz^2 + xy^2))`.
+/// Von Mises' equivalent stress, `sqrt(((xx - yy)^2 + (yy - zz)^2 + (zz - xx)^2)/2 + 3 (yz^2 + xz^2 +
+/// xy^2))`.
 ///
-/// The components are xx, yy, zz, yz, xz, xy. There is no overflow on the way; a result beyond 1e308 is infinite.
+/// The components are xx, yy, zz, yz, xz, xy. There is no overflow on the way; a result beyond 1e308 is
+/// infinite.
 ///
 /// ```
 /// // Uniaxial tension, pure shear, and a hydrostatic pressure.
@@ -17,8 +19,8 @@ pub fn von_mises(stress: &[f64; 6]) -> f64 {
     scale * (0.5 * (a * a + b * b + c * c) + 3.0 * (yz * yz + xz * xz + xy * xy)).sqrt()
 }
 
-/// The principal stresses, from the largest tension to the largest compression. Exact to rounding of the largest one;
-/// source: Jacobi's method.
+/// The principal stresses, from the largest tension to the largest compression. Exact to rounding of the
+/// largest one; source: Jacobi's method.
 ///
 /// ```
 /// use interface::stress::principal_stresses;
@@ -54,8 +56,8 @@ pub fn principal_stresses(stress: &[f64; 6]) -> [f64; 3] {
     principal
 }
 
-/// Tresca's equivalent stress: the difference of the largest and the smallest principal stress, twice the largest
-/// shear stress.
+/// Tresca's equivalent stress: the difference of the largest and the smallest principal stress, twice the
+/// largest shear stress.
 ///
 /// ```
 /// assert_eq!(interface::stress::tresca(&[0.0, 0.0, -2.0, 0.0, 0.0, 0.0]), 2.0);

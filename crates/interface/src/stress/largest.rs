@@ -4,8 +4,8 @@ use super::load::{StressedBody, SurfaceLoad, scaled_depths};
 use super::plan::SubsurfaceStress;
 use contact_model::{Error, Result, Stop};
 
-/// Width of the last bracket of the depth, over the first one. A maximum is flat, so that its value is good to about
-/// the square of it.
+/// Width of the last bracket of the depth, over the first one. A maximum is flat, so that its value is good
+/// to about the square of it.
 const BRACKET: f64 = 1e-4;
 /// Steps that a search may take; golden sections alone need 20.
 const MOST_STEPS: usize = 40;
@@ -26,11 +26,11 @@ pub struct LargestVonMises {
 }
 
 impl LargestVonMises {
-    /// The factor on all tractions at which this stress is a yield stress Y; `None` without a load, and where no `f64`
-    /// holds it.
+    /// The factor on all tractions at which this stress is a yield stress Y; `None` without a load, and where
+    /// no `f64` holds it.
     ///
-    /// It is the factor on the load of a contact only if all tractions grow alike. Those of most contacts do not: the
-    /// largest pressure of Hertz's contact, for instance, grows with the cube root of its force.
+    /// It is the factor on the load of a contact only if all tractions grow alike. Those of most contacts do
+    /// not: the largest pressure of Hertz's contact, for instance, grows with the cube root of its force.
     ///
     /// # Errors
     /// [`Error::Domain`] for a yield stress that is not positive.
@@ -45,13 +45,14 @@ impl LargestVonMises {
 
 /// The largest equivalent stress of von Mises over all cells and depths.
 ///
-/// The stress is computed at the depths given, and the depth is then refined between the neighbours of the best one.
-/// The result is therefore the largest value at the centres of cells, of the maximum in the range of depths that the
-/// samples point to. Samples have to be dense enough for the maximum that matters: that of a patch of radius a is
-/// near 0.5 a, and rough contacts have patches of many sizes. Between centres the stress may be larger by a share of
-/// the order of `(d/a)^2` for cells of side d.
+/// The stress is computed at the depths given, and the depth is then refined between the neighbours of the
+/// best one. The result is therefore the largest value at the centres of cells, of the maximum in the range
+/// of depths that the samples point to. Samples have to be dense enough for the maximum that matters: that of
+/// a patch of radius a is near 0.5 a, and rough contacts have patches of many sizes. Between centres the
+/// stress may be larger by a share of the order of `(d/a)^2` for cells of side d.
 ///
-/// Cost: that of one depth for each depth and for each of about ten steps of the refinement. One depth is kept.
+/// Cost: that of one depth for each depth and for each of about ten steps of the refinement. One depth is
+/// kept.
 ///
 /// # Errors
 /// Those of [`SubsurfaceStress::new`] and [`SubsurfaceStress::at_depth`]; [`Error::Shape`] without depths.
@@ -111,8 +112,9 @@ fn largest_at(plan: &SubsurfaceStress<'_>, depth: f64, stop: Stop<'_>) -> Result
     Ok(LargestVonMises { value, depth, cell: [ix, iy], centre, stress: plane.at(ix, iy) })
 }
 
-/// The largest value between two depths by Brent's method: parabolas through the last three depths, and golden
-/// sections where they do not help (Brent, Algorithms for Minimization without Derivatives, 1973, chapter 5).
+/// The largest value between two depths by Brent's method: parabolas through the last three depths, and
+/// golden sections where they do not help (Brent, Algorithms for Minimization without Derivatives, 1973,
+/// chapter 5).
 fn refined(
     start: LargestVonMises,
     [mut low, mut high]: [f64; 2],

@@ -2,7 +2,8 @@
 
 use contact_model::{Body, Boundary, Cells, Error, Field, Fields, Pair, Result, Size};
 
-/// Depths and distances beyond this number of sides of a cell are refused: their powers leave the range of f64.
+/// Depths and distances beyond this number of sides of a cell are refused: their powers leave the range of
+/// f64.
 pub(super) const FARTHEST: f64 = 1e60;
 
 /// Which of the two bodies of a contact.
@@ -17,7 +18,8 @@ pub enum LoadedBody {
     Second,
 }
 
-/// What acts on the surface of one body: a pressure and, with friction, tangential tractions; constant in each cell.
+/// What acts on the surface of one body: a pressure and, with friction, tangential tractions; constant in
+/// each cell.
 ///
 /// ```
 /// use contact_model::Field;

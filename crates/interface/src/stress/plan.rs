@@ -9,13 +9,13 @@ use contact_model::{Boundary, Cells, Error, Field, Interrupted, Result, Stop, ch
 use numerics::fourier::{Complex64, ForwardTransform, InverseTransform, fast_length};
 use numerics::parallel::{for_each_until, map, threads_for};
 
-/// Distance of the copies across a line, over the period, beyond the map itself: the waves along the line cause
-/// `exp(-2 pi 5.6)` = 5e-16 of their stress there.
+/// Distance of the copies across a line, over the period, beyond the map itself: the waves along the line
+/// cause `exp(-2 pi 5.6)` = 5e-16 of their stress there.
 const CLEARANCE: f64 = 5.6;
 /// Work of the influence functions of a pair of cells, in elements of a vector loop.
 const PAIR: usize = 64;
-/// Influence functions, one of each parity at most, whose sum is transformed as one: even, odd in both, odd in x, odd
-/// in y. The parts of the sum are told apart by the symmetries of its waves.
+/// Influence functions, one of each parity at most, whose sum is transformed as one: even, odd in both, odd
+/// in x, odd in y. The parts of the sum are told apart by the symmetries of its waves.
 const GROUPS: [[Option<usize>; 4]; 5] = [
     [Some(0), Some(5), Some(4), Some(3)],
     [Some(1), Some(10), Some(6), Some(8)],
@@ -28,8 +28,8 @@ const PRESSURE_GROUPS: usize = 3;
 
 /// The stress below the surface of a body, planned once for any number of depths.
 ///
-/// The plan holds the waves of the load. [`SubsurfaceStress::at_depth`] takes the influence functions of one depth,
-/// multiplies and transforms back.
+/// The plan holds the waves of the load. [`SubsurfaceStress::at_depth`] takes the influence functions of one
+/// depth, multiplies and transforms back.
 #[derive(Debug)]
 pub struct SubsurfaceStress<'a> {
     load: &'a SurfaceLoad,
@@ -134,8 +134,8 @@ impl<'a> SubsurfaceStress<'a> {
         self.load
     }
 
-    /// Bytes that the plan and one depth need at their peak, approximately: with free boundaries those of 27 maps,
-    /// and of 57 maps with tractions.
+    /// Bytes that the plan and one depth need at their peak, approximately: with free boundaries those of 27
+    /// maps, and of 57 maps with tractions.
     pub fn memory(&self) -> f64 {
         memory(self.load, self.grid)
     }
@@ -145,8 +145,8 @@ impl<'a> SubsurfaceStress<'a> {
     /// Cost O(N log N) for N cells. The error is about 1e-14 of the largest stress at this depth.
     ///
     /// # Errors
-    /// [`Error::Domain`] for a depth that is negative, not finite, or beyond 1e60 sides of a cell, and for a stress
-    /// that no `f64` holds; [`Error::OutOfMemory`]; [`Error::Stopped`] where `stop` says so.
+    /// [`Error::Domain`] for a depth that is negative, not finite, or beyond 1e60 sides of a cell, and for a
+    /// stress that no `f64` holds; [`Error::OutOfMemory`]; [`Error::Stopped`] where `stop` says so.
     pub fn at_depth(&self, depth: f64, stop: Stop<'_>) -> Result<StressField> {
         let z = scaled_depths(self.load, &[depth])?[0];
         check_stop(stop)?;
@@ -344,8 +344,8 @@ impl Lags {
         }
     }
 
-    /// The influence functions of a group from the waves of their sum: even ones have real waves that are even in
-    /// my, and so on.
+    /// The influence functions of a group from the waves of their sum: even ones have real waves that are
+    /// even in my, and so on.
     fn separate(&self, group: &[Option<usize>; 4], rows: usize, waves: &[Complex64], values: &mut [f64]) {
         let half = rows / 2 + 1;
         for (mx, column) in waves.chunks_exact(rows).enumerate() {
@@ -385,7 +385,8 @@ fn fill(field: &Field, grid: Grid, scale: f64, iy: usize, row: &mut [f64]) {
     }
 }
 
-/// The influence functions of a uniform load on every copy of the map, of a body that cannot expand laterally.
+/// The influence functions of a uniform load on every copy of the map, of a body that cannot expand
+/// laterally.
 fn mean(poisson: f64) -> [f64; KERNELS] {
     let mut uniform = Potentials::default().kernels(poisson);
     uniform[0] = -poisson / (1.0 - poisson);

@@ -13,16 +13,17 @@ const PAIR: usize = 64;
 
 /// The stress at points (x, y, z) with z >= 0, anywhere in the half-space: components xx, yy, zz, yz, xz, xy.
 ///
-/// The map begins at x = y = 0. Stresses are sums of closed forms over the loaded cells. Tests take this function as
-/// the reference of [`super::stress_at_depths`].
+/// The map begins at x = y = 0. Stresses are sums of closed forms over the loaded cells. Tests take this
+/// function as the reference of [`super::stress_at_depths`].
 ///
-/// Cost: about 0.3 us for each pair of a point and a loaded cell. The error is about 1e-14 of the largest traction.
-/// On the edge of a cell at the surface, where the traction jumps, normal and shear stress in the surface are the
-/// means of both sides, and an infinite lateral stress is that at a distance of 1e-12 sides of a cell.
+/// Cost: about 0.3 us for each pair of a point and a loaded cell. The error is about 1e-14 of the largest
+/// traction. On the edge of a cell at the surface, where the traction jumps, normal and shear stress in the
+/// surface are the means of both sides, and an infinite lateral stress is that at a distance of 1e-12 sides
+/// of a cell.
 ///
 /// # Errors
-/// [`Error::Domain`] for Poisson's ratio, and for a coordinate that is not finite, beyond 1e60 sides of a cell, or
-/// above the surface; [`Error::Unsupported`] for a map that repeats itself; [`Error::OutOfMemory`];
+/// [`Error::Domain`] for Poisson's ratio, and for a coordinate that is not finite, beyond 1e60 sides of a
+/// cell, or above the surface; [`Error::Unsupported`] for a map that repeats itself; [`Error::OutOfMemory`];
 /// [`Error::Stopped`] where `stop` says so.
 ///
 /// ```

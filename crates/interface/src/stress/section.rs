@@ -29,8 +29,8 @@ pub struct StressSection {
 /// Cost: that of [`SubsurfaceStress::at_depth`] for each depth. One depth is kept beside the section.
 ///
 /// # Errors
-/// Those of [`SubsurfaceStress::new`] and [`SubsurfaceStress::at_depth`]; [`Error::Domain`] for a row or a column that
-/// the map does not have.
+/// Those of [`SubsurfaceStress::new`] and [`SubsurfaceStress::at_depth`]; [`Error::Domain`] for a row or a
+/// column that the map does not have.
 ///
 /// ```
 /// use contact_model::{Field, never};

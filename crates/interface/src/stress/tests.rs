@@ -119,7 +119,8 @@ fn waves_of_the_grid_have_their_closed_form() {
                 ]
             };
             let expected: Vec<_> = (0..192).map(|i| expected(i % 16, i / 16)).collect();
-            // Of the wave at the surface: rounding of longer waves, which fall more slowly, reaches further down.
+            // Of the wave at the surface: rounding of longer waves, which fall more slowly, reaches further
+            // down.
             let error = expected
                 .iter()
                 .zip(stresses(&plane))
@@ -171,8 +172,9 @@ fn a_section_is_a_line_of_each_plane() {
     let row = stress_section(&load, body, SectionLine::Row(2), &depths, &never).unwrap();
     let column = stress_section(&load, body, SectionLine::Column(5), &depths, &never).unwrap();
     for (i, plane) in planes.iter().enumerate() {
-        assert!((0..6).all(|ix| row.stress[6 * i + ix] == plane.at(ix, 2)));
-        assert!((0..4).all(|iy| column.stress[4 * i + iy] == plane.at(5, iy)));
+        let bits = |stress: [f64; 6]| stress.map(f64::to_bits);
+        assert!((0..6).all(|ix| bits(row.stress[6 * i + ix]) == bits(plane.at(ix, 2))));
+        assert!((0..4).all(|iy| bits(column.stress[4 * i + iy]) == bits(plane.at(5, iy))));
     }
     assert_eq!((row.positions[1], column.positions[3]), (0.75, 0.875));
 }

@@ -1,14 +1,14 @@
 //! Potentials of waves of tractions, and of the grid of waves that a load constant in each cell consists of.
 //!
-//! A load that is constant in each cell has waves of any length. Those that differ by whole numbers of waves per
-//! cell have the same values at the centres of cells, and add up to one number for each wave of the grid. With
-//! `k` a wave of the grid, the sum over its aliases `k + G` is
+//! A load that is constant in each cell has waves of any length. Those that differ by whole numbers of waves
+//! per cell have the same values at the centres of cells, and add up to one number for each wave of the grid.
+//! With `k` a wave of the grid, the sum over its aliases `k + G` is
 //!
 //! `sinc(kx dx/2) sinc(ky dy/2) sum_mn (-1)^(m + n) kx/(kx + Gx) ky/(ky + Gy) S(k + G)`
 //!
-//! with the stress S under a wave of amplitude 1, and `G = 2 pi (m/dx, n/dy)`. The terms alternate in sign, so that
-//! some twenty of them in each direction give the sum to rounding at any depth, 0 included, although near the surface
-//! they fall as 1/(m n) only.
+//! with the stress S under a wave of amplitude 1, and `G = 2 pi (m/dx, n/dy)`. The terms alternate in sign,
+//! so that some twenty of them in each direction give the sum to rounding at any depth, 0 included, although
+//! near the surface they fall as 1/(m n) only.
 //!
 //! Without the wave itself the sum is an analytic function of the wave. It is computed at Chebyshev nodes and
 //! interpolated to all waves of the grid.
@@ -29,7 +29,8 @@ const DIGITS: f64 = 37.0;
 
 /// The potentials under a wave of amplitude 1 whose numbers are not both 0.
 ///
-/// A derivative that is odd in kx, or in ky, is that of a wave a quarter of its length further: it has no factor i here.
+/// A derivative that is odd in kx, or in ky, is that of a wave a quarter of its length further: it has no
+/// factor i here.
 pub fn wave([kx, ky]: [f64; 2], z: f64) -> Potentials {
     let q = kx.hypot(ky);
     let (x, y, depth) = (kx / q, ky / q, q * z);
@@ -122,20 +123,20 @@ impl CellWaves {
     }
 
     /// The aliases of a wave along one axis that have not decayed at a depth: number, wave number and weight.
-    fn along(&self, [k, side]: [f64; 2], z: f64) -> impl Iterator<Item = (i32, f64, f64)> + '_ {
-        let terms = (PLAIN + WEIGHTED) as i32;
-        (1 - terms..terms).filter_map(move |m| {
-            if m == 0 {
-                return Some((0, k, 1.0));
-            }
-            let alias = k + 2.0 * PI * f64::from(m) / side;
-            let weight = self.weights[m.unsigned_abs() as usize] * k / alias;
-            (alias.abs() * z < LARGEST_EXPONENT).then_some((m, alias, weight))
-        })
+    /// Those of both signs have the same number.
+    fn along(&self, [k, side]: [f64; 2], z: f64) -> impl Iterator<Item = (usize, f64, f64)> + '_ {
+        let others = self.weights.iter().enumerate().skip(1);
+        let both = others.flat_map(|(m, weight)| [(m, -1.0, weight), (m, 1.0, weight)]);
+        let aliases = both.filter_map(move |(m, sign, weight)| {
+            let alias = k + sign * 2.0 * PI * m as f64 / side;
+            (alias.abs() * z < LARGEST_EXPONENT).then_some((m, alias, weight * k / alias))
+        });
+        std::iter::once((0, k, 1.0)).chain(aliases)
     }
 
-    /// The first `count` influence functions of the other aliases of all waves of a grid at one depth, with the wave
-    /// numbers >= 0 along each axis; `None` where they are smaller than the rounding of the waves themselves.
+    /// The first `count` influence functions of the other aliases of all waves of a grid at one depth, with
+    /// the wave numbers >= 0 along each axis; `None` where they are smaller than the rounding of the waves
+    /// themselves.
     pub fn aliases(
         &self,
         waves: [&[f64]; 2],
@@ -179,15 +180,16 @@ impl Aliases {
 #[derive(Debug)]
 struct Interpolation {
     nodes: Vec<f64>,
-    /// Of each wave the weights of the nodes, for even functions and for odd ones; none where the nodes are the waves.
+    /// Of each wave the weights of the nodes, for even functions and for odd ones; none where the nodes are
+    /// the waves.
     weights: Option<[Vec<f64>; 2]>,
 }
 
 impl Interpolation {
-    /// `oblong` is the side of a cell along this axis over the other one. The functions have poles at the nearest
-    /// alias, two half intervals from 0. They have branch points where the other wave number, at least `pi` over the
-    /// other side, is i times this one: `oblong` half intervals from the real axis. The nearer ones decide how the
-    /// error falls with the number of nodes.
+    /// `oblong` is the side of a cell along this axis over the other one. The functions have poles at the
+    /// nearest alias, two half intervals from 0. They have branch points where the other wave number, at
+    /// least `pi` over the other side, is i times this one: `oblong` half intervals from the real axis. The
+    /// nearer ones decide how the error falls with the number of nodes.
     fn new(waves: &[f64], shortest: f64, oblong: f64) -> Self {
         // Half of the degree, because the nodes of the other sign follow.
         let count = (0.5 * DIGITS / oblong.asinh().min(2.0_f64.acosh())).ceil();
@@ -218,9 +220,9 @@ impl Interpolation {
         Self { nodes, weights: Some(weights) }
     }
 
-    /// Adds the values at a wave, for one or many sets of `count` influence functions; `axis` says along which axis
-    /// their parity counts.
-    #[inline(always)]
+    /// Adds the values at a wave, for one or many sets of `count` influence functions; `axis` says along
+    /// which axis their parity counts.
+    #[inline]
     fn add_at<'a>(
         &self,
         wave: usize,

@@ -9,9 +9,9 @@ const QUADRATURE: f64 = 1e-12;
 
 const RATIOS: [f64; 4] = [0.0, 0.25, 0.3, 0.5];
 
-/// Boussinesq's stress under a unit force, with cylindrical components turned to Cartesian ones (K. L. Johnson,
-/// Contact Mechanics, Eqs. 3.20), and Cerruti's under a unit traction along x (Eqs. 3.75 and 3.76): traction along x,
-/// along y, pressure.
+/// Boussinesq's stress under a unit force, with cylindrical components turned to Cartesian ones (K. L.
+/// Johnson, Contact Mechanics, Eqs. 3.20), and Cerruti's under a unit traction along x (Eqs. 3.75 and 3.76):
+/// traction along x, along y, pressure.
 fn textbook([x, y, z]: [f64; 3], nu: f64) -> [[f64; 6]; 3] {
     let rho = (x * x + y * y + z * z).sqrt();
     let r2 = x * x + y * y;
@@ -218,24 +218,13 @@ fn the_stress_below_is_continuous_to_the_surface() {
 
 #[test]
 fn a_strip_is_a_long_rectangle() {
-    // The ends of a rectangle of length 2 X are (z/X)^2 away.
-    let long = RectangularCell::new([2e7, 0.8]);
+    // The ends are so far away that their share of the stress, about the width over the length, is rounding.
+    let long = RectangularCell::new([2e15, 0.8]);
     for nu in RATIOS {
         for (y, z) in [(0.0, 0.0), (0.1, 0.3), (0.8, 0.0), (1.6, 2.0), (8.0, 0.5), (5.0, 10.0)] {
-            // Logarithms of an endless strip are measured from one place: differences of two places are compared.
-            let [a, b] = [y, y + 0.8].map(|y| stress_of(&strip(y, z, 0.8), nu));
-            let [c, d] = [long.closed_form([0.0, y, z]), long.closed_form([0.0, y + 0.8, z])]
-                .map(|p| stress_of(&p, nu));
-            for load in 0..3 {
-                for component in 0..6 {
-                    let strips = a[load][component] - b[load][component];
-                    let cells = c[load][component] - d[load][component];
-                    assert!(
-                        (strips - cells).abs() < 1e-12,
-                        "{nu} {y} {z}: {load} {component}: {strips} {cells}"
-                    );
-                }
-            }
+            let rectangle = stress_of(&long.closed_form([0.0, y, z]), nu);
+            let difference = largest_difference(stress_of(&strip(y, z, 0.8), nu), rectangle);
+            assert!(difference < 1e-13, "{nu} {y} {z}: {difference:e}");
         }
     }
 }

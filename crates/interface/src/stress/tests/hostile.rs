@@ -76,7 +76,7 @@ fn no_load_has_no_stress() {
     for &boundary in Boundary::ALL {
         let body = StressedBody { boundary, ..StressedBody::new(0.3) };
         let largest = largest_von_mises(&uniform(0.0), body, &[0.0, 1.0], &never).unwrap();
-        assert!(largest.value <= 0.0 && largest.stress == [0.0; 6]);
+        assert!(largest.value <= 0.0 && largest.stress.iter().all(|component| component.abs() <= 0.0));
         assert_eq!(largest.factor_until_yield(1.0).unwrap(), None);
         assert!(largest.factor_until_yield(0.0).is_err() && largest.factor_until_yield(f64::NAN).is_err());
     }

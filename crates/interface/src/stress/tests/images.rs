@@ -58,7 +58,8 @@ fn a_periodic_map_is_a_free_one_with_many_copies() {
                 .zip(of_mean)
                 .map(|(all, mean)| std::array::from_fn(|i| all[i] - mean[i]))
                 .collect();
-            // The tractions of a copy have a dipole, whose lateral stress falls as r^-3: N copies a side leave 1/N.
+            // The tractions of a copy have a dipole, whose lateral stress falls as r^-3: N copies a side
+            // leave 1/N.
             let copies = [7, 13, 25, 41];
             let sums = copies.map(|count| without_mean(&load, [count; 2], nu, depth));
             let errors = sums.each_ref().map(|sum| relative_difference(&varying, sum));

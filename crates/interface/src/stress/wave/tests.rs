@@ -16,7 +16,8 @@ fn stress_at(load: usize, k: [f64; 2], nu: f64, [x, y, z]: [f64; 3]) -> [f64; 6]
     let phase = k[0] * x + k[1] * y;
     let unit = std::array::from_fn(|axis| f64::from(u8::from(axis == load)));
     let values = combine(&kernels, unit);
-    // The parity of a component under a traction is that under a pressure, turned along the axis of the traction.
+    // The parity of a component under a traction is that under a pressure, turned along the axis of the
+    // traction.
     std::array::from_fn(|component| {
         let mut odd = ODD_OF_PRESSURE[component];
         if load < 2 {
@@ -100,20 +101,20 @@ fn waves_obey_equilibrium_and_compatibility() {
             for load in 0..3 {
                 let stress = |place: [f64; 3]| stress_at(load, k, nu, place);
                 let trace = |place: [f64; 3]| stress(place)[..3].iter().sum::<f64>();
-                for i in 0..3 {
+                for (i, row) in INDEX.iter().enumerate() {
                     let along = |j: usize| -> f64 {
                         FIRST_WEIGHTS
                             .iter()
-                            .map(|(s, w)| w / STEP * stress(moved(j, *s, place))[INDEX[i][j]])
+                            .map(|(s, w)| w / STEP * stress(moved(j, *s, place))[row[j]])
                             .sum()
                     };
                     let force: f64 = (0..3).map(along).sum();
                     assert!(force.abs() < FIRST, "{k:?} {nu} {load}: {force}");
-                    for j in 0..3 {
+                    for (j, &component) in row.iter().enumerate() {
                         // Beltrami and Michell.
                         let laplacian: f64 = (0..3)
                             .flat_map(|axis| SECOND_WEIGHTS.map(|(s, w)| (axis, s, w)))
-                            .map(|(axis, s, w)| w / STEP.powi(2) * stress(moved(axis, s, place))[INDEX[i][j]])
+                            .map(|(axis, s, w)| w / STEP.powi(2) * stress(moved(axis, s, place))[component])
                             .sum();
                         let curvature: f64 = if i == j {
                             let term = |(s, w): (f64, f64)| w / STEP.powi(2) * trace(moved(i, s, place));
