@@ -82,8 +82,17 @@
 //!
 //! # Accuracy, speed and limits
 //!
-//! Errors of stresses are about 1e-14 of the largest one. What differs from a contact is the load, which is
-//! constant in cells: near the surface, at depths of a side of a cell or less, this shows.
+//! Errors of stresses are about 1e-14 of the largest one. Sixteen depths of a map of 512 x 512 cells took the
+//! times below, on two cores of an AMD EPYC (`examples/subsurface_stress.rs`).
+//!
+//! | boundaries | a pressure | with tractions |
+//! |---|---|---|
+//! | free | 3.1 s, 67 MB | 5.0 s, 126 MB |
+//! | periodic | 0.7 s, 26 MB | 0.8 s, 39 MB |
+//! | periodic along x alone | 2.5 s, 80 MB | 6.4 s, 145 MB |
+//!
+//! What differs from a contact is the load, which is constant in cells. This shows at depths of a side of a
+//! cell or less.
 //!
 //! * At the surface, where a traction jumps between two cells, the lateral stress on the edge is infinite.
 //!   Centres of cells have finite values, but these grow with the logarithm of the number of cells if the

@@ -51,7 +51,7 @@ impl LargestVonMises {
 /// a patch of radius a is near 0.5 a, and rough contacts have patches of many sizes. Between centres the
 /// stress may be larger by a share of the order of `(d/a)^2` for cells of side d.
 ///
-/// Cost: that of one depth for each depth and for each of about ten steps of the refinement. One depth is
+/// Cost: that of one depth for each depth and for each of ten to twenty steps of the refinement. One depth is
 /// kept.
 ///
 /// # Errors
@@ -74,9 +74,6 @@ pub fn largest_von_mises(
     depths: &[f64],
     stop: Stop<'_>,
 ) -> Result<LargestVonMises> {
-    if depths.is_empty() {
-        return Err(Error::Shape { name: "depths".into(), found: 0, expected: "at least one depth".into() });
-    }
     scaled_depths(load, depths)?;
     let plan = SubsurfaceStress::new(load, body)?;
     let mut sorted = depths.to_vec();
@@ -90,7 +87,6 @@ pub fn largest_von_mises(
         }
     }
     let Some((i, largest)) = best else {
-        // Unreachable: there is a depth.
         return Err(Error::Shape { name: "depths".into(), found: 0, expected: "at least one depth".into() });
     };
     let bracket = [sorted[i.saturating_sub(1)], sorted[(i + 1).min(sorted.len() - 1)]];
@@ -161,4 +157,42 @@ fn refined(
         }
     }
     Ok(best)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn found(function: impl Fn(f64) -> f64, start: f64, bracket: [f64; 2]) -> (f64, usize) {
+        let at = |depth: f64| LargestVonMises {
+            value: function(depth),
+            depth,
+            cell: [0, 0],
+            centre: [0.0; 2],
+            stress: [0.0; 6],
+        };
+        let mut steps = 0;
+        let best = refined(at(start), bracket, |depth| {
+            assert!((bracket[0]..=bracket[1]).contains(&depth));
+            steps += 1;
+            Ok(at(depth))
+        });
+        (best.unwrap().depth, steps)
+    }
+
+    #[test]
+    fn maxima_inside_at_kinks_and_at_ends() {
+        for start in [0.5, 0.9, 2.0] {
+            let (depth, steps) = found(|z| z * (-z).exp(), start, [0.3, 2.5]);
+            assert!((depth - 1.0).abs() < 2.0 * BRACKET * 2.2 && steps <= 18, "{start}: {depth} in {steps}");
+            let (depth, steps) = found(|z| 3.0 - (z - 1.2).abs(), start, [0.3, 2.5]);
+            assert!((depth - 1.2).abs() < 2.0 * BRACKET * 2.2 && steps <= 30, "{start}: {depth} in {steps}");
+        }
+        let (depth, _) = found(|z| -z, 0.0, [0.0, 1.0]);
+        assert!(depth <= 0.0);
+        let (depth, _) = found(|z| z, 1.0, [0.0, 1.0]);
+        assert!(depth >= 1.0);
+        // A value that is the same everywhere ends too.
+        assert!(found(|_| 1.0, 0.5, [0.0, 1.0]).1 <= MOST_STEPS);
+    }
 }

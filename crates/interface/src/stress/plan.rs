@@ -134,8 +134,8 @@ impl<'a> SubsurfaceStress<'a> {
         self.load
     }
 
-    /// Bytes that the plan and one depth need at their peak, approximately: with free boundaries those of 27
-    /// maps, and of 57 maps with tractions.
+    /// Bytes that the plan and one depth need at their peak, approximately. With free boundaries those are
+    /// about 30 maps, and 60 with tractions; each further thread adds up to 4 of them.
     pub fn memory(&self) -> f64 {
         memory(self.load, self.grid)
     }
@@ -155,7 +155,8 @@ impl<'a> SubsurfaceStress<'a> {
         if self.waves.is_empty() {
             return StressField::new(
                 depth,
-                (cells, size),
+                cells,
+                size,
                 std::array::from_fn(|_| vec![0.0; self.load.pressure().values().len()]),
             );
         }
@@ -171,7 +172,7 @@ impl<'a> SubsurfaceStress<'a> {
         if let Some(value) = components.iter().flatten().find(|value| !value.is_finite()) {
             return Err(Error::not_representable("stress", *value));
         }
-        StressField::new(depth, (cells, size), components)
+        StressField::new(depth, cells, size, components)
     }
 
     fn tractions(&self) -> bool {

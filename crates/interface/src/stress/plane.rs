@@ -23,7 +23,7 @@ pub struct StressField {
 }
 
 impl StressField {
-    pub(super) fn new(depth: f64, (cells, size): (Cells, Size), components: [Vec<f64>; 6]) -> Result<Self> {
+    pub(super) fn new(depth: f64, cells: Cells, size: Size, components: [Vec<f64>; 6]) -> Result<Self> {
         let [xx, yy, zz, yz, xz, xy] = components.map(|values| Field::new(cells, size, values));
         Ok(Self { depth, components: [xx?, yy?, zz?, yz?, xz?, xy?] })
     }

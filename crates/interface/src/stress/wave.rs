@@ -149,8 +149,8 @@ impl CellWaves {
             return Ok(None);
         }
         let [a, b] = self.sides;
-        let along_x = Interpolation::new(waves[0], shortest[0], a / b);
-        let along_y = Interpolation::new(waves[1], shortest[1], b / a);
+        let along_x = Interpolation::new(0, waves[0], shortest[0], a / b);
+        let along_y = Interpolation::new(1, waves[1], shortest[1], b / a);
         let (nodes, rows) = (along_y.nodes.len(), waves[1].len());
         let mut values = vec![0.0; along_x.nodes.len() * rows * count];
         let mut at_nodes = vec![vec![[0.0; KERNELS]; nodes]; threads_for(usize::MAX)];
@@ -160,7 +160,7 @@ impl CellWaves {
                 *to = self.other_aliases([kx, ky], z);
             }
             for (my, to) in column.chunks_exact_mut(count).enumerate() {
-                along_y.add_at(my, 1, |node| &at_nodes[node][..count], (count, to));
+                along_y.add_at(my, |node| &at_nodes[node][..count], count, to);
             }
         });
         if all { Ok(Some(Aliases { along_x, count, values, rows })) } else { Err(Interrupted) }
@@ -172,13 +172,15 @@ impl Aliases {
     pub fn add(&self, mx: usize, to: &mut [f64]) {
         let length = self.rows * self.count;
         let from = |node: usize| &self.values[node * length..][..length];
-        widest(|| self.along_x.add_at(mx, 0, from, (self.count, to)));
+        widest(|| self.along_x.add_at(mx, from, self.count, to));
     }
 }
 
 /// Interpolation of functions that are even or odd from nodes in [0, k] to waves there.
 #[derive(Debug)]
 struct Interpolation {
+    /// The axis along which the parity of the influence functions counts.
+    axis: usize,
     nodes: Vec<f64>,
     /// Of each wave the weights of the nodes, for even functions and for odd ones; none where the nodes are
     /// the waves.
@@ -190,11 +192,11 @@ impl Interpolation {
     /// nearest alias, two half intervals from 0. They have branch points where the other wave number, at
     /// least `pi` over the other side, is i times this one: `oblong` half intervals from the real axis. The
     /// nearer ones decide how the error falls with the number of nodes.
-    fn new(waves: &[f64], shortest: f64, oblong: f64) -> Self {
+    fn new(axis: usize, waves: &[f64], shortest: f64, oblong: f64) -> Self {
         // Half of the degree, because the nodes of the other sign follow.
         let count = (0.5 * DIGITS / oblong.asinh().min(2.0_f64.acosh())).ceil();
         if count >= waves.len() as f64 {
-            return Self { nodes: waves.to_vec(), weights: None };
+            return Self { axis, nodes: waves.to_vec(), weights: None };
         }
         let count = count as usize;
         let angles: Vec<f64> = (0..count).map(|j| PI * (j as f64 + 0.5) / (2 * count) as f64).collect();
@@ -217,19 +219,12 @@ impl Interpolation {
             }
             weights
         });
-        Self { nodes, weights: Some(weights) }
+        Self { axis, nodes, weights: Some(weights) }
     }
 
-    /// Adds the values at a wave, for one or many sets of `count` influence functions; `axis` says along
-    /// which axis their parity counts.
+    /// Adds the values at a wave, for one or many sets of `count` influence functions.
     #[inline]
-    fn add_at<'a>(
-        &self,
-        wave: usize,
-        axis: usize,
-        values: impl Fn(usize) -> &'a [f64],
-        (count, to): (usize, &mut [f64]),
-    ) {
+    fn add_at<'a>(&self, wave: usize, values: impl Fn(usize) -> &'a [f64], count: usize, to: &mut [f64]) {
         let Some(weights) = &self.weights else {
             for (to, value) in to.iter_mut().zip(values(wave)) {
                 *to += value;
@@ -238,7 +233,7 @@ impl Interpolation {
         };
         for node in 0..self.nodes.len() {
             let both = [0, 1].map(|odd| weights[odd][wave * self.nodes.len() + node]);
-            let of_kernels = ODD.map(|odd| both[usize::from(odd[axis])]);
+            let of_kernels = ODD.map(|odd| both[usize::from(odd[self.axis])]);
             for (to, from) in to.chunks_exact_mut(count).zip(values(node).chunks_exact(count)) {
                 for ((to, value), weight) in to.iter_mut().zip(from).zip(&of_kernels) {
                     *to += weight * value;
