@@ -36,7 +36,7 @@ pub struct SubsurfaceStress<'a> {
     body: StressedBody,
     /// The largest traction, in units of which the load is transformed.
     scale: f64,
-    grid: Grid,
+    grid: TransformGrid,
     /// The axis along which each acts, and its waves.
     waves: Vec<(usize, Vec<Complex64>)>,
     inverse: InverseTransform,
@@ -44,7 +44,7 @@ pub struct SubsurfaceStress<'a> {
 
 /// The cells of a transform. A map that repeats itself along y alone is turned.
 #[derive(Debug, Clone, Copy)]
-struct Grid {
+struct TransformGrid {
     turned: bool,
     cells: Cells,
     /// Sides of a cell, in units of c.
@@ -53,7 +53,7 @@ struct Grid {
     rows: usize,
 }
 
-impl Grid {
+impl TransformGrid {
     fn new(load: &SurfaceLoad, boundary: Boundary) -> Result<Self> {
         let turned = boundary == Boundary::PeriodicAlongY;
         let (_, [a, b]) = load.unit();
@@ -116,7 +116,7 @@ impl<'a> SubsurfaceStress<'a> {
     /// [`Error::Domain`] for Poisson's ratio; [`Error::OutOfMemory`] where the memory cannot be had.
     pub fn new(load: &'a SurfaceLoad, body: StressedBody) -> Result<Self> {
         body.validate()?;
-        let grid = Grid::new(load, body.boundary)?;
+        let grid = TransformGrid::new(load, body.boundary)?;
         check_memory(load.cells(), memory(load, grid))?;
         let scale = load.largest();
         let forward = ForwardTransform::new(grid.columns, grid.rows);
@@ -197,7 +197,7 @@ impl<'a> SubsurfaceStress<'a> {
 
     /// The waves of the influence functions between cells.
     fn free(&self, z: f64, stop: Stop<'_>) -> Result<Spectra> {
-        let Grid { cells, sides, .. } = self.grid;
+        let TransformGrid { cells, sides, .. } = self.grid;
         let count = self.kernels();
         let cell = RectangularCell::new(sides);
         let mut table = vec![0.0; cells.columns * cells.rows * count];
@@ -218,7 +218,7 @@ impl<'a> SubsurfaceStress<'a> {
 
     /// The influence functions of the waves of the grid with their aliases.
     fn periodic(&self, z: f64, stop: Stop<'_>) -> Result<Spectra> {
-        let Grid { sides, .. } = self.grid;
+        let TransformGrid { sides, .. } = self.grid;
         let poisson = self.body.poisson;
         let (count, [_, half]) = (self.kernels(), self.grid.quarter());
         let numbers = self.grid.wave_numbers();
@@ -253,7 +253,7 @@ impl<'a> SubsurfaceStress<'a> {
 
     /// Puts endless strips, which the mean along the line consists of, in the place of waves along y alone.
     fn replace_mean_along_line(&self, spectra: &mut Spectra, z: f64) {
-        let Grid { cells, sides, rows, .. } = self.grid;
+        let TransformGrid { cells, sides, rows, .. } = self.grid;
         let count = spectra.count;
         let mut table = Vec::with_capacity(cells.rows * count);
         for iy in 0..cells.rows {
@@ -377,7 +377,7 @@ fn lag(place: usize, cells: usize, points: usize) -> Option<(usize, f64)> {
 }
 
 /// Writes row `iy` of the load, turned as the grid, in units of `scale`.
-fn fill(field: &Field, grid: Grid, scale: f64, iy: usize, row: &mut [f64]) {
+fn fill(field: &Field, grid: TransformGrid, scale: f64, iy: usize, row: &mut [f64]) {
     if iy >= grid.cells.rows {
         return;
     }
@@ -403,7 +403,7 @@ fn transposed(values: &[f64], Cells { columns, rows }: Cells) -> Vec<f64> {
 }
 
 /// Bytes of a plan and one depth.
-fn memory(load: &SurfaceLoad, grid: Grid) -> f64 {
+fn memory(load: &SurfaceLoad, grid: TransformGrid) -> f64 {
     let loads = load.components().len();
     let (kernels, maps) = if loads > 1 { (KERNELS, loads) } else { (PRESSURE_KERNELS, loads) };
     let (map, points) = (load.cells().map_bytes(), 8.0 * grid.points());

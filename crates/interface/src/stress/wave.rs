@@ -87,7 +87,7 @@ pub struct CellWaves {
 /// The other aliases of the waves of a grid.
 #[derive(Debug)]
 pub struct Aliases {
-    along_x: Interpolation,
+    along_x: NodeInterpolation,
     /// Number of influence functions.
     count: usize,
     /// `values[(node * rows + my) * count + kernel]` at the nodes along x and the waves along y.
@@ -149,8 +149,8 @@ impl CellWaves {
             return Ok(None);
         }
         let [a, b] = self.sides;
-        let along_x = Interpolation::new(0, waves[0], shortest[0], a / b);
-        let along_y = Interpolation::new(1, waves[1], shortest[1], b / a);
+        let along_x = NodeInterpolation::new(0, waves[0], shortest[0], a / b);
+        let along_y = NodeInterpolation::new(1, waves[1], shortest[1], b / a);
         let (nodes, rows) = (along_y.nodes.len(), waves[1].len());
         let mut values = vec![0.0; along_x.nodes.len() * rows * count];
         let mut at_nodes = vec![vec![[0.0; KERNELS]; nodes]; threads_for(usize::MAX)];
@@ -178,7 +178,7 @@ impl Aliases {
 
 /// Interpolation of functions that are even or odd from nodes in [0, k] to waves there.
 #[derive(Debug)]
-struct Interpolation {
+struct NodeInterpolation {
     /// The axis along which the parity of the influence functions counts.
     axis: usize,
     nodes: Vec<f64>,
@@ -187,7 +187,7 @@ struct Interpolation {
     weights: Option<[Vec<f64>; 2]>,
 }
 
-impl Interpolation {
+impl NodeInterpolation {
     /// `oblong` is the side of a cell along this axis over the other one. The functions have poles at the
     /// nearest alias, two half intervals from 0. They have branch points where the other wave number, at
     /// least `pi` over the other side, is i times this one: `oblong` half intervals from the real axis. The
