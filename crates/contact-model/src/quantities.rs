@@ -9,6 +9,7 @@
 use crate::conductance::Conductance;
 use crate::effects::{Boundary, Effects, Friction};
 use crate::error::Result;
+use crate::interface_state::{LargestStress, LeakageState, PathState};
 use crate::load::Directions;
 use crate::normalisation::Normalisation;
 use crate::state::ContactState;
@@ -164,6 +165,35 @@ impl ContactState {
     }
 }
 
+/// Something that a scene reads off the fields of a state, beside the outputs of its model
+/// ([`crate::InterfaceState`]).
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum InterfaceOutput {
+    /// Flow of a fluid between opposite edges.
+    Leakage,
+    /// Paths between opposite edges, and their critical constriction.
+    Percolation,
+    /// The largest stress below the surface.
+    StressBelow,
+    /// The factor until a yield stress is reached there.
+    YieldStress,
+}
+
+impl InterfaceOutput {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Leakage, Self::Percolation, Self::StressBelow, Self::YieldStress];
+
+    /// The key in `[outputs]` of a scene, and the key of its table where it is one.
+    pub fn key(self) -> &'static str {
+        match self {
+            Self::Leakage => "leakage",
+            Self::Percolation => "percolation",
+            Self::StressBelow => "stress_below",
+            Self::YieldStress => "yield_stress",
+        }
+    }
+}
+
 /// The properties of a scene that decide whether a quantity is reported of its states.
 #[derive(Debug, Clone, Copy)]
 pub struct SceneProperties<'a> {
@@ -171,6 +201,8 @@ pub struct SceneProperties<'a> {
     pub effects: &'a Effects,
     /// Outputs that are requested.
     pub outputs: &'a Outputs,
+    /// What is read off the interface.
+    pub interface: &'a [InterfaceOutput],
     /// Whether the surface has an rms height, so that normalised forces exist.
     pub rough: bool,
     /// Whether the states lie along a path.
@@ -196,6 +228,8 @@ pub enum AskedBy {
     PrescribedDistance,
     /// An output.
     Output(Output),
+    /// Something that is read off the interface.
+    Interface(InterfaceOutput),
     /// A stiffness of either kind, or a quantity that follows from one.
     AnyStiffness,
     /// A tangential stiffness of either kind.
@@ -218,6 +252,7 @@ impl AskedBy {
             Self::Path => scene.path,
             Self::PrescribedDistance => scene.prescribes_distance,
             Self::Output(output) => scene.outputs.asks(output),
+            Self::Interface(output) => scene.interface.contains(&output),
             Self::AnyStiffness => scene.outputs.needs_stiffness(),
             Self::AnyTangentialStiffness => {
                 scene.outputs.tangential_stiffness || scene.outputs.tangential_stiffness_stuck
@@ -239,6 +274,10 @@ impl AskedBy {
             Self::Path => "a path".into(),
             Self::PrescribedDistance => "a prescribed approach or mean gap".into(),
             Self::Output(output) => format!("`{}` in [outputs]", output.name()),
+            Self::Interface(InterfaceOutput::YieldStress) => {
+                "`yield_stress` in `stress_below` of [outputs]".into()
+            }
+            Self::Interface(output) => format!("`{}` in [outputs]", output.key()),
             Self::AnyStiffness => "a stiffness or the conductance in [outputs]".into(),
             Self::AnyTangentialStiffness => "a tangential stiffness in [outputs]".into(),
             Self::FrictionInPlane => {
@@ -422,6 +461,31 @@ const PULLED: &[AskedBy] = &[Path, Effect("adhesion")];
 /// A viscoelastic history.
 const VISCOELASTIC: AskedBy = Effect("rheology");
 
+const LEAKAGE: AskedBy = AskedBy::Interface(InterfaceOutput::Leakage);
+const PERCOLATION: AskedBy = AskedBy::Interface(InterfaceOutput::Percolation);
+const STRESS_BELOW: AskedBy = AskedBy::Interface(InterfaceOutput::StressBelow);
+const YIELD_STRESS: AskedBy = AskedBy::Interface(InterfaceOutput::YieldStress);
+
+/// A number of the leakage.
+fn leaked(state: &ContactState, number: impl Fn(LeakageState) -> Option<f64>) -> Value {
+    state.interface.leakage.and_then(number).into()
+}
+
+/// A number of the paths along x or along y.
+fn path(state: &ContactState, axis: usize, number: impl Fn(PathState) -> f64) -> Value {
+    state.interface.percolation.map(|paths| number(paths[axis])).into()
+}
+
+/// A number of the largest stress.
+fn stressed(state: &ContactState, number: impl Fn(LargestStress) -> Option<f64>) -> Value {
+    state.interface.stress.and_then(number).into()
+}
+
+/// 1 where it holds, so that the mean over surfaces is the share of them where it does.
+fn as_number(holds: bool) -> f64 {
+    f64::from(u8::from(holds))
+}
+
 /// Every quantity, in the order of the columns of tables.
 pub static QUANTITIES: &[StateQuantity] = &quantities! {
     "time" "time" "t" Si("s"); Path; "time at the end of the step"
@@ -553,6 +617,76 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
         "2 k/(E* (rho_1 + rho_2)) with the stiffness at fixed contact area (Barber)"
         { compared: Compared::Yes, source: "Barber, Proc. R. Soc. A 459, 53 (2003)" }
         => |s, _| s.conductance.into();
+    "leakage" "leakage" "Q" Si("m^3/s"); LEAKAGE;
+        "flow of the fluid through the network of the cells under the pressure drop; a cell conducts as its gap cubed"
+        => |s, _| leaked(s, |l| Some(l.flow));
+    "leakage_lower" "lower bound of the leakage" "Q" Si("m^3/s"); LEAKAGE;
+        "proven lower bound of the flow through the continuum with a constant gap in each cell"
+        { drawn: false }
+        => |s, _| leaked(s, |l| Some(l.continuum[0]));
+    "leakage_upper" "upper bound of the leakage" "Q" Si("m^3/s"); LEAKAGE;
+        "proven upper bound of the flow through the continuum with a constant gap in each cell"
+        { drawn: false }
+        => |s, _| leaked(s, |l| Some(l.continuum[1]));
+    "flow_factor" "flow factor" "\\phi" One; LEAKAGE;
+        "leakage over the flow between smooth surfaces at the mean gap, where cells in contact count as 0"
+        { source: "Patir and Cheng, J. Lubr. Technol. 100, 12 (1978)" }
+        => |s, _| leaked(s, |l| l.flow_factor);
+    "open_along_x" "open path along x" "" One; PERCOLATION;
+        "1 where cells with a gap, joined by edges, lead between the opposite edges along x, otherwise 0"
+        { drawn: false }
+        => |s, _| path(s, 0, |p| as_number(p.open));
+    "open_along_y" "open path along y" "" One; PERCOLATION;
+        "1 where cells with a gap, joined by edges, lead between the opposite edges along y, otherwise 0"
+        { drawn: false }
+        => |s, _| path(s, 1, |p| as_number(p.open));
+    "contact_along_x" "path of contact along x" "" One; PERCOLATION;
+        "1 where cells in contact, joined by edges, lead between the opposite edges along x, otherwise 0"
+        { drawn: false }
+        => |s, _| path(s, 0, |p| as_number(p.contact));
+    "contact_along_y" "path of contact along y" "" One; PERCOLATION;
+        "1 where cells in contact, joined by edges, lead between the opposite edges along y, otherwise 0"
+        { drawn: false }
+        => |s, _| path(s, 1, |p| as_number(p.contact));
+    "constriction_x" "critical constriction along x" "g_c" Si("m"); PERCOLATION;
+        "gap of the critical constriction along x, the narrowest cell of the widest path; 0 where the contact closes every path"
+        => |s, _| path(s, 0, |p| p.constriction);
+    "constriction_x_at_x" "place x of the constriction along x" "" Si("m"); PERCOLATION;
+        "centre of this cell, along x"
+        { average: Average::No, drawn: false }
+        => |s, _| path(s, 0, |p| p.centre[0]);
+    "constriction_x_at_y" "place y of the constriction along x" "" Si("m"); PERCOLATION;
+        "centre of this cell, along y"
+        { average: Average::No, drawn: false }
+        => |s, _| path(s, 0, |p| p.centre[1]);
+    "constriction_y" "critical constriction along y" "g_c" Si("m"); PERCOLATION;
+        "gap of the critical constriction along y, the narrowest cell of the widest path; 0 where the contact closes every path"
+        => |s, _| path(s, 1, |p| p.constriction);
+    "constriction_y_at_x" "place x of the constriction along y" "" Si("m"); PERCOLATION;
+        "centre of this cell, along x"
+        { average: Average::No, drawn: false }
+        => |s, _| path(s, 1, |p| p.centre[0]);
+    "constriction_y_at_y" "place y of the constriction along y" "" Si("m"); PERCOLATION;
+        "centre of this cell, along y"
+        { average: Average::No, drawn: false }
+        => |s, _| path(s, 1, |p| p.centre[1]);
+    "largest_von_mises" "largest stress below the surface" "\\sigma_v" Si("Pa"); STRESS_BELOW;
+        "largest equivalent stress of von Mises at the centres of cells, in the requested range of depths"
+        => |s, _| stressed(s, |l| Some(l.von_mises));
+    "largest_von_mises_depth" "depth of the largest stress" "z" Si("m"); STRESS_BELOW;
+        "depth of this stress below the surface"
+        => |s, _| stressed(s, |l| Some(l.depth));
+    "largest_von_mises_x" "place x of the largest stress" "" Si("m"); STRESS_BELOW;
+        "centre of the cell of this stress, along x"
+        { average: Average::No, drawn: false }
+        => |s, _| stressed(s, |l| Some(l.centre[0]));
+    "largest_von_mises_y" "place y of the largest stress" "" Si("m"); STRESS_BELOW;
+        "centre of the cell of this stress, along y"
+        { average: Average::No, drawn: false }
+        => |s, _| stressed(s, |l| Some(l.centre[1]));
+    "factor_until_yield" "factor until yield" "" One; YIELD_STRESS;
+        "yield stress over this stress: the factor on all pressures and tractions at which the body yields first"
+        => |s, _| stressed(s, |l| l.factor_until_yield);
     "patches" "number of contacts" "" One; AskedBy::Output(Output::ContactPatches); "connected contact areas, cells joined by an edge"
         => |s, _| s.patches.as_ref().map(crate::Patches::count).into();
     "largest_patch" "area of the largest contact" "" Si("m^2"); AskedBy::Output(Output::ContactPatches); "area of the largest patch"
@@ -642,6 +776,11 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
                                 twice as long"),
           average: Average::No, drawn: false }
         => |s, _| s.viscoelastic.and_then(|v| v.tangential_time_errors).map(|[_, displacement]| displacement).into();
+    "leakage_error" "error of the leakage" "" One; LEAKAGE;
+        "half of the distance between the proven bounds of the network's flow, over the flow"
+        { role: Role::Residual("the flow through the network of the cells lies between two proven bounds: half of their distance, over the flow"),
+          average: Average::No, drawn: false }
+        => |s, _| leaked(s, |l| Some(l.error));
     "equilibrium" "equilibrium" "" One; Effect("adhesion");
         "largest difference of an attraction from the law of its gap, over the traction in contact"
         { role: Role::Residual("the attraction of each cell is what the law says of its gap: the largest difference, over the largest traction"),

@@ -1,6 +1,7 @@
 //! The result of a solve, and its evidence.
 
 use crate::fields::{Field, Fields};
+use crate::interface_state::InterfaceState;
 use crate::patches::Patches;
 use crate::work::Work;
 use std::fmt;
@@ -59,6 +60,9 @@ pub struct ContactState {
     pub contact_radius: Option<f64>,
     /// The tangential part, for contacts with friction.
     pub tangential: Option<TangentialState>,
+    /// What was read off the interface, where a scene requests it. Models leave it empty.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub interface: InterfaceState,
     /// The requested fields; they are not stored with the state.
     #[cfg_attr(feature = "serde", serde(skip))]
     pub fields: Option<Fields>,
@@ -86,6 +90,7 @@ impl ContactState {
             resolution: None,
             contact_radius: None,
             tangential: None,
+            interface: InterfaceState::default(),
             fields: None,
             report,
         }
@@ -175,6 +180,12 @@ impl ContactState {
     #[must_use]
     pub fn with_tangential(self, tangential: impl Into<Option<TangentialState>>) -> Self {
         Self { tangential: tangential.into(), ..self }
+    }
+
+    /// With what was read off the interface.
+    #[must_use]
+    pub fn with_interface(self, interface: InterfaceState) -> Self {
+        Self { interface, ..self }
     }
 
     /// Pressure, if requested.

@@ -26,6 +26,7 @@
 //! | [`mdr1d`] | the one-dimensional reduction; friction and rheology on top of any model ([`Equivalent`]) |
 //! | [`analytic`] | closed forms and theories: Hertz, JKR, Westergaard, Persson, Greenwood and Williamson, ... |
 //! | [`surface_gen`] | self-affine surfaces from a seed, and measurements on surfaces |
+//! | [`interface`] | what the interface of a state lets through and what the bodies bear: paths, leakage, stress below the surface |
 //! | [`analysis`] | means, fits with errors, tables |
 //! | [`surface_statistics`] | parameters of ISO 25178, spectra with bands, fits with intervals |
 //! | [`surface_io`] | measured surfaces from files, and fields into files |
@@ -55,7 +56,7 @@ pub use contact_model::*;
 
 pub use bem3d::Bem3d;
 pub use mdr1d::{Equivalent, Mdr1d};
-pub use {analysis, analytic, bem3d, mdr1d, surface_gen, surface_io, surface_statistics};
+pub use {analysis, analytic, bem3d, interface, mdr1d, surface_gen, surface_io, surface_statistics};
 
 pub mod models;
 #[cfg(feature = "scenes")]

@@ -7,6 +7,7 @@ mod answers;
 mod bad_scenes;
 mod friction;
 mod in_memory;
+mod interface;
 mod limits;
 mod measured_maps;
 mod own_models;

@@ -1,7 +1,9 @@
 //! `[outputs]`: only requested outputs are computed and stored.
 
 use crate::scenes::read::key::{Context, Key, KeyTable};
-use crate::scenes::read::{Distributed, Entries, Entry, ReadResult, System, printed};
+use crate::scenes::read::{
+    Distributed, Entries, Entry, ReadResult, RequestedInterface, System, interface_outputs, printed,
+};
 use contact_model::{Conductance, FIELDS, FieldQuantity, Output, Outputs};
 use surface_io::Dimension;
 
@@ -61,6 +63,8 @@ pub struct RequestedOutputs {
     pub grid_error: bool,
     /// Whether statistics of the surface are computed: parameters, spectra, height differences.
     pub statistics: bool,
+    /// What is read off the interface.
+    pub interface: RequestedInterface,
     /// Whether curves are drawn.
     pub curves: bool,
     /// Numbers of the loads or steps whose fields are drawn; `None` means all.
@@ -94,7 +98,9 @@ impl RequestedOutputs {
         let outlined = self.files.iter().any(|(_, formats)| formats.contains(&FieldFormat::Png));
         let of_pressure = [Distributed::Pressure, Distributed::ContactPressure, Distributed::Gap].map(counts);
         self.outputs.pressure |= outlined || of_pressure.contains(&true);
-        self.outputs.gap |= counts(Distributed::Gap);
+        self.outputs.gap |= counts(Distributed::Gap) || self.interface.needs_gap();
+        // Contact is where there is a pressure.
+        self.outputs.pressure |= !self.interface.outputs().is_empty();
         self.outputs.contact_patches |= counts(Distributed::Patches);
         for (field, _) in &self.files {
             self.outputs.ask(*field, true);
@@ -108,6 +114,9 @@ impl RequestedOutputs {
             (HEIGHTS.name, !self.heights.is_empty()),
             ("distributions", !self.distributions.is_empty()),
             ("grid_error", self.grid_error),
+            ("leakage", self.interface.leakage.is_some()),
+            ("percolation", self.interface.percolation),
+            ("stress_below", self.interface.stress_below.is_some()),
             ("curves", self.curves),
             ("statistics", self.statistics),
         ];
@@ -181,6 +190,9 @@ pub(crate) static OUTPUT_KEYS: KeyTable<RequestedOutputs> = KeyTable {
             read: |requested, entry, _| entry.flag().map(|compared| requested.grid_error = compared),
             print: |requested, _| requested.grid_error.then(|| "true".to_owned()),
         },
+        interface_outputs::LEAKAGE,
+        interface_outputs::PERCOLATION,
+        interface_outputs::STRESS_BELOW,
         Key {
             name: "statistics",
             takes: "`true` or `false`",

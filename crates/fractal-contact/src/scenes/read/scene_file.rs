@@ -1,5 +1,6 @@
 //! A scene as it is read from a file.
 
+use crate::scenes::read::interface_outputs::check_interface;
 use crate::scenes::read::key::missing;
 use crate::scenes::read::loads::{AskedLoads, check_signs};
 use crate::scenes::read::numerics::print_options;
@@ -425,6 +426,8 @@ impl SceneFile {
         let sampling = sampling(&question, &surface, &places)?;
         let mut requested = question.outputs;
         requested.request_what_files_need();
+        requested.outputs.traction |=
+            requested.interface.stress_below.is_some() && effects.friction != Friction::Off;
         let mut scene = Self {
             system,
             added_body,
@@ -447,6 +450,7 @@ impl SceneFile {
         check_histories(&scene, &places)?;
         check_tangential(&scene, &places)?;
         check_coupling(&scene, &places)?;
+        check_interface(&scene, &places)?;
         scene.places = places;
         Ok(scene)
     }

@@ -7,7 +7,7 @@ use crate::scenes::read::{
 };
 use crate::scenes::run::{
     Answer, AnsweredState, FieldFile, FieldView, Folder, Keeper, ModelResult, SharedLines, StateRecord,
-    Warning, field_pictures,
+    Warning, field_pictures, with_interface,
 };
 use contact_model::{
     Cells, ContactState, Field, FieldQuantity, LargestPull, Load, NormalLoad, Normalisation, PreparedContact,
@@ -208,7 +208,10 @@ impl ContactInHand<'_, '_> {
                 continue;
             }
             let found = match &loads {
-                Ok(loads) => self.contact.solve_until(loads[index], self.stop),
+                Ok(loads) => self
+                    .contact
+                    .solve_until(loads[index], self.stop)
+                    .and_then(|state| with_interface(self.scene, state, self.stop)),
                 // A surface without an rms height has no F_bar: no load has an answer, and each row says so.
                 Err(error) => Err(error.clone()),
             };
@@ -297,7 +300,11 @@ impl ContactInHand<'_, '_> {
             }
             let advanced = step.and_then(|step| match self.contact.advance_until(step, self.stop) {
                 Err(contact_model::Error::Stopped { .. }) => Ok(None),
-                Ok(state) => Ok(Some((largest.enter(step.load.normal, state), true))),
+                // To its end: what the contact remembers belongs to the state that has been solved.
+                Ok(state) => {
+                    let state = with_interface(self.scene, state, &never)?;
+                    Ok(Some((largest.enter(step.load.normal, state), true)))
+                }
                 // The best state of a solve that missed its tolerance or, beyond the pull-off force, the last
                 // stable state.
                 Err(error) => {

@@ -63,15 +63,18 @@ pub(crate) fn asked(scene: &SceneFile) -> impl Iterator<Item = &'static StateQua
     let answers_both = |model: &Numerics| model.model().abilities().directions == Directions::Plane;
     let [_, along_y] = scene.request.shears();
     let both = along_y || scene.models.iter().any(answers_both);
-    let properties = SceneProperties {
-        effects: &scene.effects,
-        outputs: &scene.requested.outputs,
-        rough: scene.surface.is_rough(),
-        path: scene.is_history(),
-        prescribes_distance: scene.request.prescribes_distance(),
-        directions: if both { Directions::Plane } else { Directions::AlongX },
-    };
-    QUANTITIES.iter().filter(move |quantity| quantity.asked_by.holds(&properties))
+    let interface = scene.requested.interface.outputs();
+    QUANTITIES.iter().filter(move |quantity| {
+        quantity.asked_by.holds(&SceneProperties {
+            effects: &scene.effects,
+            outputs: &scene.requested.outputs,
+            interface: &interface,
+            rough: scene.surface.is_rough(),
+            path: scene.is_history(),
+            prescribes_distance: scene.request.prescribes_distance(),
+            directions: if both { Directions::Plane } else { Directions::AlongX },
+        })
+    })
 }
 
 /// Those of them whose discretisation error is reported.

@@ -30,12 +30,14 @@ pub(crate) use surface_report::SurfaceReport;
 #[cfg(test)]
 mod tests {
     use super::{columns, ensemble, pictures, report, summary};
+    use crate::scenes::read::{RequestedLeakage, RequestedStress};
     use crate::scenes::{LoadList, LoadRequest, Numerics, PrescribedLoad, SceneFile, SceneSurface};
     use contact_model::quantities::{AskedBy, Average, QUANTITIES, Role};
     use contact_model::{
-        Adhesion, Boundary, Conductance, Effect, Friction, Hardness, Load, Output, Outputs, Rheology,
-        SelfAffine, Step, Surface, Tangential,
+        Adhesion, Boundary, Conductance, Effect, Friction, Hardness, InterfaceOutput, Load, Output, Outputs,
+        Rheology, SelfAffine, Step, Surface, Tangential,
     };
+    use interface::FlowAxis;
 
     /// A scene that requests this, and as little else as possible.
     fn asking(asked: AskedBy) -> SceneFile {
@@ -82,6 +84,18 @@ mod tests {
                 let tangential = Tangential::Force([0.1, 0.1]);
                 let step = Step::new(0.0, Load::force(1.0).with_tangential(tangential));
                 scene.request = LoadRequest::Path(vec![step.into(); 2]);
+            }
+            AskedBy::Interface(InterfaceOutput::Leakage) => {
+                let along = FlowAxis::X;
+                let leakage = RequestedLeakage { viscosity: 1.0, pressure_drop: 1.0, along };
+                scene.requested.interface.leakage = Some(leakage);
+            }
+            AskedBy::Interface(InterfaceOutput::Percolation) => {
+                scene.requested.interface.percolation = true;
+            }
+            AskedBy::Interface(InterfaceOutput::StressBelow | InterfaceOutput::YieldStress) => {
+                let stress = RequestedStress { depths: vec![1.0], yield_stress: Some(1.0), body: None };
+                scene.requested.interface.stress_below = Some(stress);
             }
             AskedBy::Effect("hardness") => effects.hardness = Hardness::Limit { pressure: 1.0 },
             AskedBy::Effect("adhesion") => effects.adhesion = Adhesion::ShortRange { work: 1.0 },

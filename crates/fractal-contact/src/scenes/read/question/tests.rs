@@ -2,11 +2,15 @@
 
 use super::*;
 use crate::scenes::read::loads::LoadList;
-use crate::scenes::read::{Distributed, FieldFormat, PrescribedLoad};
+use crate::scenes::read::{
+    Distributed, FieldFormat, PrescribedLoad, RequestedInterface, RequestedLeakage, RequestedStress,
+};
 use contact_model::{
     Adhesion, AdhesionLaw, Boundary, Conductance, Coupling, Friction, FrictionLaw, Hardness, Layer,
     LayerBase, Output, PronySeries, Relaxing, Rheology, Tangential,
 };
+use interface::FlowAxis;
+use interface::stress::LoadedBody;
 use proptest::collection::vec;
 use proptest::option::of;
 use proptest::prelude::*;
@@ -265,7 +269,7 @@ fn outputs() -> BoxedStrategy<RequestedOutputs> {
     ];
     let numbers = vec(any::<bool>(), Output::ALL.len());
     let distributions = subsequence(Distributed::ALL.map(|(_, of)| of).to_vec(), 0..=4);
-    let flags = (any::<bool>(), any::<bool>(), any::<bool>(), of(vec(0..5_usize, 0..3)));
+    let flags = (any::<bool>(), any::<bool>(), any::<bool>(), of(vec(0..5_usize, 0..3)), interface());
     (numbers, formats(), formats(), conductance, distributions, flags)
         .prop_map(
             |(
@@ -274,7 +278,7 @@ fn outputs() -> BoxedStrategy<RequestedOutputs> {
                 heights,
                 conductance,
                 distributions,
-                (grid_error, statistics, curves, drawn_states),
+                (grid_error, statistics, curves, drawn_states, interface),
             )| {
                 let mut requested = RequestedOutputs {
                     heights,
@@ -283,6 +287,7 @@ fn outputs() -> BoxedStrategy<RequestedOutputs> {
                     statistics,
                     curves,
                     drawn_states,
+                    interface,
                     ..RequestedOutputs::default()
                 };
                 for (output, asked) in
@@ -296,6 +301,22 @@ fn outputs() -> BoxedStrategy<RequestedOutputs> {
                 requested
             },
         )
+        .boxed()
+}
+
+fn interface() -> BoxedStrategy<RequestedInterface> {
+    let along = select(vec![FlowAxis::X, FlowAxis::Y]);
+    let leakage = (positive(), positive(), along)
+        .prop_map(|(viscosity, pressure_drop, along)| RequestedLeakage { viscosity, pressure_drop, along });
+    let body = of(select(vec![LoadedBody::First, LoadedBody::Second]));
+    let stress = (vec(positive(), 1..4), of(positive()), body)
+        .prop_map(|(depths, yield_stress, body)| RequestedStress { depths, yield_stress, body });
+    (of(leakage), any::<bool>(), of(stress))
+        .prop_map(|(leakage, percolation, stress_below)| RequestedInterface {
+            leakage,
+            percolation,
+            stress_below,
+        })
         .boxed()
 }
 

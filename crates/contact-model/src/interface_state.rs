@@ -1,0 +1,60 @@
+//! What a scene reads off the interface of a state, beside its contact: paths, leakage, and the stress below.
+//!
+//! The crate `interface` computes these numbers from the fields of a state. They belong to the state because
+//! tables and pictures take all numbers from there.
+
+/// What was read off the interface of a state; each part is `None` where it was not requested.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct InterfaceState {
+    /// Flow of a fluid between opposite edges.
+    pub leakage: Option<LeakageState>,
+    /// Paths along x and along y.
+    pub percolation: Option<[PathState; 2]>,
+    /// The largest stress below the surface.
+    pub stress: Option<LargestStress>,
+}
+
+/// Flow of an incompressible fluid through the gap of a state, between opposite edges.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LeakageState {
+    /// Flow through the network of the cells, volume per time: the middle of its bounds.
+    pub flow: f64,
+    /// Half of the distance between these bounds, over the flow; 0 where no path leads through.
+    pub error: f64,
+    /// Lower and upper bound of the flow through the continuum with a constant gap in each cell.
+    pub continuum: [f64; 2],
+    /// The flow over that between smooth surfaces at the mean gap, cells in contact counting as 0; `None` for
+    /// an interface without any gap.
+    pub flow_factor: Option<f64>,
+}
+
+/// What leads from one edge of a map to the opposite one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PathState {
+    /// Whether cells with a gap lead from edge to edge.
+    pub open: bool,
+    /// Whether cells in contact lead from edge to edge.
+    pub contact: bool,
+    /// Gap of the critical constriction, the narrowest cell of the widest path.
+    pub constriction: f64,
+    /// Centre (x, y) of this cell.
+    pub centre: [f64; 2],
+}
+
+/// The largest equivalent stress of von Mises below the surface, at the centres of cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct LargestStress {
+    /// Its value.
+    pub von_mises: f64,
+    /// Its depth.
+    pub depth: f64,
+    /// Centre (x, y) of the cell.
+    pub centre: [f64; 2],
+    /// Factor on all tractions at which this stress is the yield stress; `None` where no yield stress is
+    /// given, and without a load.
+    pub factor_until_yield: Option<f64>,
+}

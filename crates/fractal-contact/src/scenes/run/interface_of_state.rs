@@ -1,0 +1,89 @@
+//! Reads off the interface of a state what the scene requests: leakage, percolation, stress below the surface.
+
+use crate::scenes::read::{RequestedLeakage, RequestedStress, SceneFile, stressed_body};
+use contact_model::{
+    Boundary, ContactState, Error, Field, InterfaceState, LargestStress, LeakageState, PathState, Result,
+    Stop,
+};
+use interface::stress::{StressedBody, SurfaceLoad, largest_von_mises};
+use interface::{FlowAxis, FlowBounds, FlowOptions, leakage_until, percolation};
+
+/// The state with what is read off its interface. Its fields have to be there.
+///
+/// # Errors
+/// Those of the crate `interface`; [`Error::Stopped`].
+pub(crate) fn with_interface(scene: &SceneFile, state: ContactState, stop: Stop<'_>) -> Result<ContactState> {
+    let requested = &scene.requested.interface;
+    let boundary = scene.effects.boundary;
+    let gap = requested.needs_gap().then(|| open_gap(&state)).transpose()?;
+    let of_leakage = requested.leakage.zip(gap.as_ref());
+    let of_paths = gap.as_ref().filter(|_| requested.percolation);
+    let read_off = InterfaceState {
+        leakage: of_leakage.map(|(of, gap)| leakage(gap, of, boundary, stop)).transpose()?,
+        percolation: of_paths.map(|gap| paths(gap, boundary)).transpose()?,
+        stress: requested.stress_below.as_ref().map(|of| stress(scene, &state, of, stop)).transpose()?,
+    };
+    Ok(state.with_interface(read_off))
+}
+
+/// The gap, 0 in contact. In cells in contact the solver leaves a small gap of either sign, so that contact is
+/// where a cell bears a pressure, and where its gap is not larger than the largest one under a pressure.
+fn open_gap(state: &ContactState) -> Result<Field> {
+    let gap = state.gap().ok_or_else(|| missing("gap"))?;
+    let pressure = state.pressure().ok_or_else(|| missing("pressure"))?;
+    let cells = || gap.values().iter().zip(pressure.values());
+    let left = cells().filter(|(_, p)| **p > 0.0).fold(0.0_f64, |largest, (g, _)| largest.max(g.abs()));
+    let open = |(&g, &p): (&f64, &f64)| if p > 0.0 || g <= left { 0.0 } else { g };
+    Field::new(gap.cells(), gap.size(), cells().map(open).collect())
+}
+
+fn missing(field: &str) -> Error {
+    Error::unsupported("the interface", format!("a state without the field of the {field}"))
+}
+
+fn leakage(gap: &Field, of: RequestedLeakage, boundary: Boundary, stop: Stop<'_>) -> Result<LeakageState> {
+    let found = leakage_until(gap, of.along, boundary, FlowOptions::default(), stop)?;
+    let flow = found.flow_rate(of.pressure_drop, of.viscosity)?;
+    let FlowBounds { lower, upper } = flow.continuum.unwrap_or(flow.network);
+    Ok(LeakageState {
+        flow: flow.network.middle(),
+        error: 0.5 * flow.network.relative_width(),
+        continuum: [lower, upper],
+        flow_factor: found.flow_factor.map(FlowBounds::middle),
+    })
+}
+
+fn paths(gap: &Field, boundary: Boundary) -> Result<[PathState; 2]> {
+    let along = |axis| -> Result<PathState> {
+        let found = percolation(gap, 0.0, axis, boundary)?;
+        let cell = found.constriction;
+        Ok(PathState {
+            open: found.spans,
+            contact: found.contact_spans,
+            constriction: cell.gap,
+            centre: [(cell.column as f64 + 0.5) * gap.dx(), (cell.row as f64 + 0.5) * gap.dy()],
+        })
+    };
+    Ok([along(FlowAxis::X)?, along(FlowAxis::Y)?])
+}
+
+fn stress(
+    scene: &SceneFile,
+    state: &ContactState,
+    of: &RequestedStress,
+    stop: Stop<'_>,
+) -> Result<LargestStress> {
+    let (body, poisson) = stressed_body(scene)
+        .map_err(|wrong| Error::unsupported("the stress below the surface", wrong.to_string()))?;
+    let fields = state.fields.as_ref().ok_or_else(|| missing("pressure"))?;
+    let load = SurfaceLoad::of_state(fields, body)?;
+    let body = StressedBody { boundary: scene.effects.boundary, ..StressedBody::new(poisson) };
+    let found = largest_von_mises(&load, body, &of.depths, stop)?;
+    let factor = of.yield_stress.map(|stress| found.factor_until_yield(stress)).transpose()?;
+    Ok(LargestStress {
+        von_mises: found.value,
+        depth: found.depth,
+        centre: found.centre,
+        factor_until_yield: factor.flatten(),
+    })
+}

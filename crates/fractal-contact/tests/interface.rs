@@ -1,0 +1,95 @@
+//! What a scene reads off the interface: leakage with its bounds, paths, and the stress below the surface.
+
+use fractal_contact::interface::{FlowAxis, leakage};
+use fractal_contact::scenes::{Options, Plan, SceneFile, run};
+use fractal_contact::{Boundary, Field, Load};
+use runs::{CsvFile, Silent};
+use std::path::Path;
+
+/// Runs a scene without units in a folder, and reads its results.
+fn results(directory: &Path, text: &str) -> CsvFile {
+    let path = directory.join("scene.toml");
+    std::fs::write(&path, text).unwrap();
+    let scene = SceneFile::read(&path).unwrap();
+    let options = Options { out: directory.join("out"), threads: 2, fresh: false };
+    let outcome = run(&scene, &Plan::new(&scene).unwrap(), &options, &Silent, &|| false).unwrap();
+    assert_eq!((outcome.failed, outcome.stopped), (0, false));
+    CsvFile::read(&directory.join("out/results.csv")).unwrap()
+}
+
+fn column(results: &CsvFile, name: &str) -> Vec<f64> {
+    results.numbers(name).unwrap().into_iter().map(Option::unwrap).collect()
+}
+
+const ROUGH: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\ncontact_modulus = 1\nmean_pressure = [0.01, 0.1]\n\
+    [scene.surface]\nkind = \"self_affine\"\nhurst = 0.8\nroll_off_wavelength = 0.25\nside = 1\nrms_height = 0.01\n\
+    [sampling]\nseed = 7\n[models.bem3d]\ncells = 64\n[effects]\nboundary = \"periodic\"\n\
+    [outputs]\nmean_gap = true\narea = true\nleakage = { viscosity = 2, pressure_drop = 24, along = \"x\" }\npercolation = true\n";
+
+/// The flow of a scene is that of the gap which the library finds, with 0 in contact; its bounds enclose it,
+/// and more load lets less through.
+#[test]
+fn a_scene_leaks_as_its_gap_does() {
+    let directory = tempfile::tempdir().unwrap();
+    let found = results(directory.path(), ROUGH);
+    let scene = SceneFile::read(&directory.path().join("scene.toml")).unwrap();
+    let model = scene.models[0].model();
+    let physics = scene.scene(&scene.models[0], scene.seed(0)).unwrap();
+    let mut contact = model.prepare(&physics, scene.seed(0)).unwrap();
+    let flow = column(&found, "leakage");
+    for (i, pressure) in [0.01, 0.1].into_iter().enumerate() {
+        let state = contact.solve(Load::force(pressure)).unwrap();
+        let cells = state.gap().unwrap().values().iter().zip(state.pressure().unwrap().values());
+        let open = cells.map(|(g, p)| if *p > 0.0 { 0.0 } else { g.max(0.0) }).collect();
+        let gap = Field::new(64, 1.0, open).unwrap();
+        // 24/(12 x 2) = 1.
+        let leak = leakage(&gap, FlowAxis::X, Boundary::Periodic).unwrap();
+        let flows = (flow[i], leak.network.middle());
+        assert!((flows.0 - flows.1).abs() <= 1e-9 * flows.0, "{flows:?}");
+        let [lower, upper] = ["leakage_lower", "leakage_upper"].map(|name| column(&found, name)[i]);
+        // The harmonic network underestimates the continuum.
+        assert!(flow[i] <= lower * (1.0 + 1e-9) && lower <= upper, "{} {lower} {upper}", flow[i]);
+        assert!(column(&found, "leakage_error")[i] < 1e-10);
+        let smooth = leak.mean_gap.powi(3);
+        assert!((column(&found, "flow_factor")[i] - flow[i] / smooth).abs() <= 1e-9 * flow[i] / smooth);
+        let open = column(&found, "open_along_x")[i] > 0.5;
+        assert_eq!(open, flow[i] > 0.0);
+        assert_eq!(open, column(&found, "constriction_x")[i] > 0.0);
+        let place = |name: &str| (column(&found, name)[i] * 64.0) as usize;
+        let [x, y] = ["constriction_x_at_x", "constriction_x_at_y"].map(place);
+        assert!((gap.at(x, y) - column(&found, "constriction_x")[i]).abs() < 1e-9);
+    }
+    assert!(flow[0] > flow[1]);
+}
+
+/// Hertz: 0.62 of the largest pressure at 0.48 of the radius, below the middle (nu = 0.3).
+#[test]
+fn the_largest_stress_below_a_ball() {
+    let ball = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nbodies = [\"rigid\", { young = 0.91, poisson = 0.3 }]\n\
+        force = 0.0013333333333333\n[scene.body]\nkind = \"sphere\"\nradius = 1\nside = 0.3\n[models.bem3d]\ncells = 129\n\
+        [outputs]\nstress_below = { depths = [0.02, 0.04, 0.06, 0.08], yield_stress = 0.02 }\n";
+    let directory = tempfile::tempdir().unwrap();
+    let found = results(directory.path(), ball);
+    let number = |name: &str| column(&found, name)[0];
+    // E* = 1, a = 0.1, p0 = 2 E* a/(pi R).
+    let (radius, pressure) = (0.1, 0.2 / std::f64::consts::PI);
+    let [stress, depth] = ["largest_von_mises", "largest_von_mises_depth"].map(number);
+    assert!((stress / pressure - 0.62004).abs() < 1e-3, "{}", stress / pressure);
+    assert!((depth / radius - 0.48086).abs() < 3e-3, "{}", depth / radius);
+    for name in ["largest_von_mises_x", "largest_von_mises_y"] {
+        assert!((number(name) - 0.15).abs() < 1e-9);
+    }
+    assert!((number("factor_until_yield") - 0.02 / stress).abs() < 1e-12);
+}
+
+/// A path that is interrupted goes on to the same numbers.
+#[test]
+fn a_path_leaks_too() {
+    let path = ROUGH
+        .replace("mean_pressure = [0.01, 0.1]\n", "")
+        .replace("[sampling]", "[[scene.path]]\nforce = 0.05\n[[scene.path]]\nforce = 0.01\n[sampling]");
+    let path = path.replace("boundary = \"periodic\"", "boundary = \"periodic\"\nhardness = 0.2");
+    let directory = tempfile::tempdir().unwrap();
+    let flow = column(&results(directory.path(), &path), "leakage");
+    assert!(flow[1] > flow[0] && flow[0] > 0.0, "{flow:?}");
+}
