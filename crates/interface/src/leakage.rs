@@ -56,6 +56,7 @@
 mod aggregation;
 mod bounds;
 mod continuum;
+mod currents;
 mod dense;
 mod gradients;
 mod graph;
@@ -68,9 +69,10 @@ pub use bounds::FlowBounds;
 
 use crate::axis::{FlowAxis, Layers, check_memory};
 use contact_model::{Boundary, Error, Field, Result, Stop, check_stop, never};
+use currents::{Currents, bounds};
 use gradients::Potential;
 use multigrid::Hierarchy;
-use network::{CellNetwork, Currents, NONE};
+use network::{CellNetwork, NONE};
 use numerics::sum::sum;
 use tree::SpanningForest;
 
@@ -354,7 +356,7 @@ fn solve(
     }
     let forest = SpanningForest::new(&network, stop)?;
     let solved = solve_network(&network, &forest, options, stop)?;
-    let currents = network.currents(&forest, &solved.potential);
+    let currents = Currents::new(&network, &forest, &solved.potential);
     (flow.network, flow.iterations) = (solved.bounds, solved.steps);
     flow.take_fields(&currents, &network, &solved.potential);
     if options.continuum {
@@ -392,7 +394,7 @@ fn solve_network(
         potential.add(&correction.x);
         drop(correction);
         check_stop(stop)?;
-        let bounds = network::bounds(network, &network.currents(forest, &potential));
+        let bounds = bounds(network, &Currents::new(network, forest, &potential));
         let reached = bounds.relative_width();
         if reached < width {
             (best.potential, best.bounds) = (potential.clone(), bounds);

@@ -17,11 +17,11 @@
 //! times the ratio of sides. In the network it dissipates `(a^2 + b^2)/(2 k)`, which is not less. The network
 //! therefore underestimates the conductance of the continuum, and this bound is the better one of the two.
 
+use super::currents::{Currents, Dissipation};
 use super::gradients::{Potential, solve};
 use super::graph::Graph;
 use super::multigrid::Hierarchy;
-use super::network::{CellNetwork, Currents, Dissipation, NONE, PotentialEnergy};
-use super::tree::{SINK, SOURCE};
+use super::network::{CellNetwork, NONE, PotentialEnergy, SINK, SOURCE};
 use contact_model::{Result, Stop, check_stop};
 use std::sync::Arc;
 

@@ -57,7 +57,7 @@ impl Potential {
 
 /// An approximate solution, and the steps that it took.
 #[derive(Debug)]
-pub(super) struct Solution {
+pub(super) struct SolvedPotential {
     pub x: Vec<f64>,
     pub steps: usize,
 }
@@ -75,11 +75,11 @@ pub(super) fn solve(
     right: Vec<f64>,
     reduction: f64,
     stop: Stop<'_>,
-) -> Result<Solution> {
+) -> Result<SolvedPotential> {
     let nodes = graph.nodes();
     let mut residual = right;
     let (mut z, mut direction, mut current) = (vec![0.0; nodes], vec![0.0; nodes], vec![0.0; nodes]);
-    let mut solution = Solution { x: vec![0.0; nodes], steps: 0 };
+    let mut solution = SolvedPotential { x: vec![0.0; nodes], steps: 0 };
     let (mut start, mut least, mut since) = (0.0, f64::INFINITY, 0);
     let mut energy = 0.0;
     for step in 0..LARGEST_STEPS {

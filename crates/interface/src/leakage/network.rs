@@ -1,22 +1,22 @@
 //! The network of the cells, and bounds of its conductance.
 
-use super::bounds::FlowBounds;
 use super::gradients::Potential;
 use super::graph::{Graph, ROWS, WORK_PER_ROW};
-use super::tree::{SINK, SOURCE, SpanningForest, rounded};
 use crate::axis::Layers;
 use crate::disjoint_sets::DisjointSets;
 use numerics::parallel::map;
-use numerics::sum::{Sum, sum};
+use numerics::sum::Sum;
 
 /// Relative slack of a bound for the rounding of its terms, of which each has a few.
 pub(super) const ROUNDING: f64 = 1e-13;
 /// Rounding of a difference of potentials beyond its own relative one: twice the square of the machine
 /// precision.
 const POTENTIAL_ROUNDING: f64 = 1e-31;
-/// Rounding that sums to twice the working precision leave in a current, as a share of all currents together.
-const CURRENT_ROUNDING: f64 = 1e-29;
 
+/// The edge of the high potential, in the place of a node.
+pub(super) const SOURCE: u32 = u32::MAX;
+/// The edge of the low potential, in the place of a node.
+pub(super) const SINK: u32 = u32::MAX - 1;
 /// No unknown.
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -174,87 +174,6 @@ impl CellNetwork {
         }
         energy.bound()
     }
-
-    /// Currents at these potentials, made free of divergence along a spanning forest.
-    pub fn currents<'a>(&'a self, forest: &'a SpanningForest, potential: &'a Potential) -> Currents<'a> {
-        Currents { network: self, forest, potential, correction: forest.correction(self, potential) }
-    }
-}
-
-/// Currents that are free of divergence.
-#[derive(Debug)]
-pub(super) struct Currents<'a> {
-    network: &'a CellNetwork,
-    forest: &'a SpanningForest,
-    potential: &'a Potential,
-    /// What was added to the current from each node to its parent.
-    correction: Vec<f64>,
-}
-
-impl Currents<'_> {
-    /// Current from a node to a neighbour over a conductor.
-    pub fn between(&self, node: usize, other: usize, weight: f64) -> f64 {
-        let current = weight * self.potential.above(node, other);
-        if self.forest.parent[node] == other as u32 {
-            current + self.correction[node]
-        } else if self.forest.parent[other] == node as u32 {
-            current - self.correction[other]
-        } else {
-            current
-        }
-    }
-
-    /// Current from a node to an edge.
-    pub fn to_edge(&self, node: usize, edge: u32) -> f64 {
-        let current = self.network.edge_current(node, edge, self.potential);
-        if self.forest.parent[node] == edge { current + self.correction[node] } else { current }
-    }
-
-    /// Currents out of a cell over its four faces, in the order of [`Layers::neighbours`].
-    pub fn over_faces(&self, node: usize) -> [f64; 4] {
-        let network = self.network;
-        let cell = network.cells[node] as usize;
-        let neighbours = network.layers.neighbours(cell);
-        let [layer, _] = network.layers.place(cell);
-        std::array::from_fn(|face| {
-            if face == 2 && layer == 0 {
-                return self.to_edge(node, SOURCE);
-            }
-            if face == 3 && layer + 1 == network.layers.count {
-                return self.to_edge(node, SINK);
-            }
-            let Some(other) = neighbours[face].map(|n| network.node_of[n]).filter(|&n| n != NONE) else {
-                return 0.0;
-            };
-            let conductor = network.graph.conductors(node).find(|&(to, _)| to == other as usize);
-            let current = conductor.map_or(0.0, |(other, weight)| self.between(node, other, weight));
-            // The two faces in a ring of two cells share their current.
-            if face < 2 && neighbours[0] == neighbours[1] { 0.5 * current } else { current }
-        })
-    }
-
-    /// The current from edge to edge.
-    pub fn total(&self) -> f64 {
-        sum((0..self.network.graph.nodes()).map(|node| -self.to_edge(node, SOURCE)))
-    }
-
-    /// What Thomson's principle makes of these currents: with the total current I and the dissipation W no
-    /// conductance is below `I^2/W`, less its rounding.
-    pub fn lower_bound(&self) -> f64 {
-        let mut dissipation = Dissipation::default();
-        for node in 0..self.network.graph.nodes() {
-            for (other, weight) in self.network.graph.conductors(node).filter(|&(other, _)| other > node) {
-                dissipation.take(self.between(node, other, weight), 1.0 / weight);
-            }
-            for edge in [SOURCE, SINK] {
-                let weight = self.network.to_edge(node, edge);
-                if weight > 0.0 {
-                    dissipation.take(self.to_edge(node, edge), 1.0 / weight);
-                }
-            }
-        }
-        dissipation.conductance(self.total())
-    }
 }
 
 /// The energy of a potential, with what bounds its rounding.
@@ -280,40 +199,9 @@ impl PotentialEnergy {
     }
 }
 
-/// The dissipation of currents, with what bounds its rounding.
-#[derive(Debug, Default)]
-pub(super) struct Dissipation {
-    power: Sum,
-    /// Sums of the currents, of the resistances, and of their products.
-    currents: f64,
-    resistances: f64,
-    drops: f64,
-}
-
-impl Dissipation {
-    /// Adds a current through a resistance.
-    pub fn take(&mut self, current: f64, resistance: f64) {
-        self.add(current * (current * resistance), current.abs(), resistance);
-    }
-
-    /// Adds a power of about `current^2 resistance`.
-    pub fn add(&mut self, power: f64, current: f64, resistance: f64) {
-        self.power.add(power);
-        self.currents += current;
-        self.resistances += resistance;
-        self.drops += current * resistance;
-    }
-
-    /// The bound of the conductance that follows for this total current.
-    pub fn conductance(&self, total: f64) -> f64 {
-        let off = CURRENT_ROUNDING * self.currents;
-        let power = self.power.value() + off * (2.0 * self.drops + off * self.resistances);
-        let total = (total.abs() - off).max(0.0);
-        if power > 0.0 && power.is_finite() { total * (total / power) * (1.0 - ROUNDING) } else { 0.0 }
-    }
-}
-
-/// Bounds of the conductance of the network.
-pub(super) fn bounds(network: &CellNetwork, currents: &Currents<'_>) -> FlowBounds {
-    FlowBounds { lower: currents.lower_bound(), upper: network.upper_bound(currents.potential) }
+/// A sum as its value and what the rounding of it leaves.
+pub(super) fn rounded(mut sum: Sum) -> (f64, f64) {
+    let value = sum.value();
+    sum.add(-value);
+    (value, sum.value())
 }

@@ -1,7 +1,7 @@
 //! A spanning tree of good conductors, along which currents are made exactly free of divergence.
 
 use super::gradients::Potential;
-use super::network::CellNetwork;
+use super::network::{CellNetwork, SINK, SOURCE, rounded};
 use crate::disjoint_sets::DisjointSets;
 use contact_model::{Result, Stop, check_stop};
 use numerics::sum::Sum;
@@ -18,11 +18,6 @@ pub(super) struct SpanningForest {
     /// All nodes, each one after its parent.
     order: Vec<u32>,
 }
-
-/// The edge of the high potential, as a parent.
-pub(super) const SOURCE: u32 = u32::MAX;
-/// The edge of the low potential.
-pub(super) const SINK: u32 = u32::MAX - 1;
 
 /// A conductor with its conductance as an integer of the same order.
 type Conductor = (std::cmp::Reverse<u64>, u32, u32);
@@ -108,13 +103,6 @@ impl SpanningForest {
         }
         correction
     }
-}
-
-/// A sum as its value and what the rounding of it leaves.
-pub(super) fn rounded(mut sum: Sum) -> (f64, f64) {
-    let value = sum.value();
-    sum.add(-value);
-    (value, sum.value())
 }
 
 /// Every conductor once, those to the edges included.

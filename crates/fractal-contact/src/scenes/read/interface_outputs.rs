@@ -1,10 +1,7 @@
 //! What a scene reads off the interface: leakage, percolation and the stress below the surface.
 
-use crate::scenes::read::key::Key;
-use crate::scenes::read::{
-    Diagnostic, Entry, Numerics, Places, ReadResult, RequestedOutputs, SceneFile, System, printed,
-};
-use contact_model::{Body, Friction, InterfaceOutput, Output};
+use crate::scenes::read::{Diagnostic, Entry, ReadResult, System, printed};
+use contact_model::{Body, Friction, InterfaceOutput, Pair};
 use interface::FlowAxis;
 use interface::stress::LoadedBody;
 use surface_io::Dimension;
@@ -69,62 +66,28 @@ fn word_of<T: PartialEq + Copy>(words: &[(&'static str, T)], value: T) -> String
     printed::text(words.iter().find(|(_, known)| *known == value).map_or("", |(word, _)| word))
 }
 
-pub(crate) const LEAKAGE: Key<RequestedOutputs> = Key {
-    name: "leakage",
-    takes: "table",
-    about: "flow of an incompressible fluid through the gap between opposite edges, with proven bounds: `{ viscosity = \"1 mPa s\", \
-            pressure_drop = \"1 bar\", along = \"x\" }`; the contact is impermeable, and so are the sides of a map that does not repeat \
-            across the flow",
-    default: "none",
-    read: |requested, entry, context| {
-        requested.interface.leakage = Some(read_leakage(entry, context.system)?);
-        Ok(())
-    },
-    print: |requested, system| {
-        requested.interface.leakage.map(|RequestedLeakage { viscosity, pressure_drop, along }| {
-            let viscosity = printed::quantity(viscosity, Dimension::VISCOSITY, system);
-            let pressure_drop = printed::quantity(pressure_drop, Dimension::PRESSURE, system);
-            let along = word_of(&AXES, along);
-            format!("{{ viscosity = {viscosity}, pressure_drop = {pressure_drop}, along = {along} }}")
-        })
-    },
-};
+pub(crate) fn print_leakage(leakage: &RequestedLeakage, system: System) -> String {
+    let RequestedLeakage { viscosity, pressure_drop, along } = *leakage;
+    let viscosity = printed::quantity(viscosity, Dimension::VISCOSITY, system);
+    let pressure_drop = printed::quantity(pressure_drop, Dimension::PRESSURE, system);
+    let along = word_of(&AXES, along);
+    format!("{{ viscosity = {viscosity}, pressure_drop = {pressure_drop}, along = {along} }}")
+}
 
-pub(crate) const PERCOLATION: Key<RequestedOutputs> = Key {
-    name: "percolation",
-    takes: "`true` or `false`",
-    about: "whether cells with a gap, and cells in contact, lead between opposite edges along x and along y, and the critical \
-            constriction, the narrowest cell of the widest path",
-    default: "`false`",
-    read: |requested, entry, _| entry.flag().map(|asked| requested.interface.percolation = asked),
-    print: |requested, _| requested.interface.percolation.then(|| "true".to_owned()),
-};
+pub(crate) fn print_stress(stress: &RequestedStress, system: System) -> String {
+    let RequestedStress { depths, yield_stress, body } = stress;
+    let depths = depths.iter().map(|depth| printed::quantity(*depth, Dimension::LENGTH, system));
+    let mut parts = vec![format!("depths = [{}]", depths.collect::<Vec<_>>().join(", "))];
+    parts.extend(
+        yield_stress.map(|stress| {
+            format!("yield_stress = {}", printed::quantity(stress, Dimension::PRESSURE, system))
+        }),
+    );
+    parts.extend(body.map(|body| format!("body = {}", word_of(&BODIES, body))));
+    format!("{{ {} }}", parts.join(", "))
+}
 
-pub(crate) const STRESS_BELOW: Key<RequestedOutputs> = Key {
-    name: "stress_below",
-    takes: "table",
-    about: "the largest equivalent stress of von Mises below the surface, and its place: `{ depths = [\"1 um\", \"2 um\", \"5 um\"], \
-            yield_stress = \"1 GPa\", body = \"second\" }`. The depth is refined between the neighbours of the best of `depths`. With \
-            `yield_stress` there is the factor on all tractions until yield. `body` is needed where two elastic bodies differ",
-    default: "none",
-    read: |requested, entry, context| {
-        requested.interface.stress_below = Some(read_stress(entry, context.system)?);
-        Ok(())
-    },
-    print: |requested, system| {
-        requested.interface.stress_below.as_ref().map(|RequestedStress { depths, yield_stress, body }| {
-            let depths = depths.iter().map(|depth| printed::quantity(*depth, Dimension::LENGTH, system));
-            let mut parts = vec![format!("depths = [{}]", depths.collect::<Vec<_>>().join(", "))];
-            parts.extend(yield_stress.map(|stress| {
-                format!("yield_stress = {}", printed::quantity(stress, Dimension::PRESSURE, system))
-            }));
-            parts.extend(body.map(|body| format!("body = {}", word_of(&BODIES, body))));
-            format!("{{ {} }}", parts.join(", "))
-        })
-    },
-};
-
-fn read_leakage(entry: &Entry<'_>, system: System) -> ReadResult<RequestedLeakage> {
+pub(crate) fn read_leakage(entry: &Entry<'_>, system: System) -> ReadResult<RequestedLeakage> {
     let table = entry.table()?;
     let viscosity = table.require("viscosity", "\"1 mPa s\"")?.positive(Dimension::VISCOSITY, system)?;
     let pressure_drop = table.require("pressure_drop", "\"1 bar\"")?.positive(Dimension::PRESSURE, system)?;
@@ -133,7 +96,7 @@ fn read_leakage(entry: &Entry<'_>, system: System) -> ReadResult<RequestedLeakag
     Ok(RequestedLeakage { viscosity, pressure_drop, along })
 }
 
-fn read_stress(entry: &Entry<'_>, system: System) -> ReadResult<RequestedStress> {
+pub(crate) fn read_stress(entry: &Entry<'_>, system: System) -> ReadResult<RequestedStress> {
     let table = entry.table()?;
     let of = table.require("depths", "[\"1 um\", \"2 um\", \"5 um\"]")?;
     let depths: Vec<f64> = of
@@ -151,72 +114,40 @@ fn read_stress(entry: &Entry<'_>, system: System) -> ReadResult<RequestedStress>
     Ok(RequestedStress { depths, yield_stress, body })
 }
 
-/// The body whose stress is computed, and its Poisson's ratio.
-pub(crate) fn stressed_body(scene: &SceneFile) -> Result<(LoadedBody, f64), Diagnostic> {
-    let Some(pair) = scene.pair else {
-        return Err(Diagnostic::new(
-            "the stress below the surface depends on Poisson's ratio, which the scene does not give",
-        )
-        .with_help("name the `bodies` instead of `contact_modulus`"));
-    };
-    let asked = scene.requested.interface.stress_below.as_ref().and_then(|stress| stress.body);
-    let ratio = |body: Body| match body {
-        Body::Elastic { poisson, .. } => Some(poisson),
-        _ => None,
-    };
-    let (first, second) = (ratio(pair.first), ratio(pair.second));
-    let same = first.map(f64::to_bits) == second.map(f64::to_bits) && scene.effects.friction == Friction::Off;
-    let body = match (asked, first, second) {
-        (Some(body), ..) => body,
-        (None, None, Some(_)) => LoadedBody::Second,
-        (None, Some(_), None) => LoadedBody::First,
-        (None, ..) if same => LoadedBody::First,
-        (None, ..) => {
-            let message = "two elastic bodies, and `stress_below` does not say in which of them";
-            return Err(Diagnostic::new(message).with_help("add `body = \"first\"` or `body = \"second\"`"));
-        }
-    };
-    let ratio = if body == LoadedBody::First { first } else { second };
-    ratio.map(|poisson| (body, poisson)).ok_or_else(|| {
-        Diagnostic::new("the body of `stress_below` is rigid: it has no stress that follows from the contact")
-            .with_help("name the elastic one")
-    })
-}
-
-/// Checks that the interface of the scene has what is requested.
-pub(crate) fn check_interface(scene: &SceneFile, places: &Places) -> ReadResult<()> {
-    let requested = &scene.requested.interface;
-    let refused = |key: &str, message: String, help: &str| {
-        Err(places.at_key(&format!("outputs.{key}"), message).with_help(help.to_owned()))
-    };
-    for (output, field) in requested.outputs().into_iter().flat_map(|output| {
-        let gap = (output != InterfaceOutput::StressBelow).then_some((output, Output::Gap));
-        [Some((output, Output::Pressure)), gap].into_iter().flatten()
-    }) {
-        let lacks = |numerics: &&Numerics| !numerics.model().abilities().outputs.contains(&field);
-        if let Some(numerics) = scene.models.iter().find(lacks) {
-            let (key, model, field) = (output.key(), numerics.name(), field.name());
+impl RequestedStress {
+    /// The body whose stress is computed, and its Poisson's ratio.
+    ///
+    /// # Errors
+    /// Where Poisson's ratio is not known, or it is not said which of two bodies is meant.
+    pub(crate) fn of_body(&self, pair: Option<Pair>, friction: Friction) -> ReadResult<(LoadedBody, f64)> {
+        let Some(pair) = pair else {
             let message =
-                format!("`{key}` needs the {field} of each cell, which the model {model} does not compute");
-            return refused(key, message, "boundary elements do: `models = [\"bem3d\"]`");
-        }
+                "the stress below the surface depends on Poisson's ratio, which the scene does not give";
+            return Err(Diagnostic::new(message).with_help("name the `bodies` instead of `contact_modulus`"));
+        };
+        let ratio = |body: Body| match body {
+            Body::Elastic { poisson, .. } => Some(poisson),
+            _ => None,
+        };
+        let (first, second) = (ratio(pair.first), ratio(pair.second));
+        let same = first.map(f64::to_bits) == second.map(f64::to_bits) && friction == Friction::Off;
+        let body = match (self.body, first, second) {
+            (Some(body), ..) => body,
+            (None, None, Some(_)) => LoadedBody::Second,
+            (None, Some(_), None) => LoadedBody::First,
+            (None, ..) if same => LoadedBody::First,
+            (None, ..) => {
+                let message = "two elastic bodies, and `stress_below` does not say in which of them";
+                return Err(
+                    Diagnostic::new(message).with_help("add `body = \"first\"` or `body = \"second\"`")
+                );
+            }
+        };
+        let ratio = if body == LoadedBody::First { first } else { second };
+        ratio.map(|poisson| (body, poisson)).ok_or_else(|| {
+            let message =
+                "the body of `stress_below` is rigid: it has no stress that follows from the contact";
+            Diagnostic::new(message).with_help("name the elastic one")
+        })
     }
-    let undefined = scene.surface.given_map().map_or(0, |map| map.undefined());
-    if requested.leakage.is_some() && undefined > 0 {
-        let message = format!("the flow through a map with {undefined} undefined points is not known");
-        return refused("leakage", message, "fill them with `fill` in [scene.surface], or crop the map");
-    }
-    if scene.surface.is_profile() && !requested.outputs().is_empty() {
-        let key = requested.outputs()[0].key();
-        let message = format!("`{key}` of a profile: it needs a map with several rows");
-        return refused(key, message, "remove it, or press a map");
-    }
-    if requested.stress_below.is_none() {
-        return Ok(());
-    }
-    if scene.effects.layer.is_some() {
-        let message = "the stress below the surface of a layer is not known here".to_owned();
-        return refused("stress_below", message, "remove `layer` or `stress_below`");
-    }
-    stressed_body(scene).map(|_| ()).map_err(|wrong| wrong.at(places.key("outputs.stress_below")))
 }

@@ -1,9 +1,8 @@
 //! `[outputs]`: only requested outputs are computed and stored.
 
+use crate::scenes::read::interface_outputs::{print_leakage, print_stress, read_leakage, read_stress};
 use crate::scenes::read::key::{Context, Key, KeyTable};
-use crate::scenes::read::{
-    Distributed, Entries, Entry, ReadResult, RequestedInterface, System, interface_outputs, printed,
-};
+use crate::scenes::read::{Distributed, Entries, Entry, ReadResult, RequestedInterface, System, printed};
 use contact_model::{Conductance, FIELDS, FieldQuantity, Output, Outputs};
 use surface_io::Dimension;
 
@@ -190,9 +189,38 @@ pub(crate) static OUTPUT_KEYS: KeyTable<RequestedOutputs> = KeyTable {
             read: |requested, entry, _| entry.flag().map(|compared| requested.grid_error = compared),
             print: |requested, _| requested.grid_error.then(|| "true".to_owned()),
         },
-        interface_outputs::LEAKAGE,
-        interface_outputs::PERCOLATION,
-        interface_outputs::STRESS_BELOW,
+        Key {
+            name: "leakage",
+            takes: "table",
+            about: "flow of an incompressible fluid through the gap between opposite edges, with proven bounds: `{ viscosity = \"1 mPa s\", pressure_drop = \"1 bar\", along = \"x\" }`; the contact is impermeable, and so are the sides of a map that does not repeat across the flow",
+            default: "none",
+            read: |requested, entry, context| {
+                requested.interface.leakage = Some(read_leakage(entry, context.system)?);
+                Ok(())
+            },
+            print: |requested, system| requested.interface.leakage.map(|of| print_leakage(&of, system)),
+        },
+        Key {
+            name: "percolation",
+            takes: "`true` or `false`",
+            about: "whether cells with a gap, and cells in contact, lead between opposite edges along x and along y, and the critical constriction, the narrowest cell of the widest path",
+            default: "`false`",
+            read: |requested, entry, _| entry.flag().map(|asked| requested.interface.percolation = asked),
+            print: |requested, _| requested.interface.percolation.then(|| "true".to_owned()),
+        },
+        Key {
+            name: "stress_below",
+            takes: "table",
+            about: "the largest equivalent stress of von Mises below the surface, and its place: `{ depths = [\"1 um\", \"2 um\", \"5 um\"], yield_stress = \"1 GPa\", body = \"second\" }`. The depth is refined between the neighbours of the best of `depths`. With `yield_stress` there is the factor on all tractions until yield. `body` is needed where two elastic bodies differ",
+            default: "none",
+            read: |requested, entry, context| {
+                requested.interface.stress_below = Some(read_stress(entry, context.system)?);
+                Ok(())
+            },
+            print: |requested, system| {
+                requested.interface.stress_below.as_ref().map(|of| print_stress(of, system))
+            },
+        },
         Key {
             name: "statistics",
             takes: "`true` or `false`",

@@ -1,6 +1,5 @@
 //! A scene as it is read from a file.
 
-use crate::scenes::read::interface_outputs::check_interface;
 use crate::scenes::read::key::missing;
 use crate::scenes::read::loads::{AskedLoads, check_signs};
 use crate::scenes::read::numerics::print_options;
@@ -13,8 +12,8 @@ use crate::scenes::read::{
     ReadResult, Registry, RequestedAccuracy, RequestedOutputs, Result, SceneSurface, System, nearest, short,
 };
 use contact_model::{
-    Adhesion, Body, Boundary, Cells, Directions, Effect, Effects, Friction, Hardness, NormalLoad, Output,
-    Pair, Paths, Rheology, Scene, Size, Surface,
+    Adhesion, Body, Boundary, Cells, Directions, Effect, Effects, Friction, Hardness, InterfaceOutput,
+    NormalLoad, Output, Pair, Paths, Rheology, Scene, Size, Surface,
 };
 use std::io::Read as _;
 use std::ops::Range;
@@ -757,6 +756,43 @@ fn check_coupling(scene: &SceneFile, places: &Places) -> ReadResult<()> {
         }
         _ => Ok(()),
     }
+}
+
+/// Checks that the interface of the scene has what is requested.
+fn check_interface(scene: &SceneFile, places: &Places) -> ReadResult<()> {
+    let requested = &scene.requested.interface;
+    let refused = |key: &str, message: String, help: &str| {
+        Err(places.at_key(&format!("outputs.{key}"), message).with_help(help.to_owned()))
+    };
+    for (output, field) in requested.outputs().into_iter().flat_map(|output| {
+        let gap = (output != InterfaceOutput::StressBelow).then_some((output, Output::Gap));
+        [Some((output, Output::Pressure)), gap].into_iter().flatten()
+    }) {
+        let lacks = |numerics: &&Numerics| !numerics.model().abilities().outputs.contains(&field);
+        if let Some(numerics) = scene.models.iter().find(lacks) {
+            let (key, model, field) = (output.key(), numerics.name(), field.name());
+            let message =
+                format!("`{key}` needs the {field} of each cell, which the model {model} does not compute");
+            return refused(key, message, "boundary elements do: `models = [\"bem3d\"]`");
+        }
+    }
+    let undefined = scene.surface.given_map().map_or(0, |map| map.undefined());
+    if requested.leakage.is_some() && undefined > 0 {
+        let message = format!("the flow through a map with {undefined} undefined points is not known");
+        return refused("leakage", message, "fill them with `fill` in [scene.surface], or crop the map");
+    }
+    if scene.surface.is_profile() && !requested.outputs().is_empty() {
+        let key = requested.outputs()[0].key();
+        let message = format!("`{key}` of a profile: it needs a map with several rows");
+        return refused(key, message, "remove it, or press a map");
+    }
+    let Some(stress) = &requested.stress_below else { return Ok(()) };
+    if scene.effects.layer.is_some() {
+        let message = "the stress below the surface of a layer is not known here".to_owned();
+        return refused("stress_below", message, "remove `layer` or `stress_below`");
+    }
+    let body = stress.of_body(scene.pair, scene.effects.friction);
+    body.map(|_| ()).map_err(|wrong| wrong.at(places.key("outputs.stress_below")))
 }
 
 /// Columns and rows of boundary elements, elements of a line: a given map brings its own cells.

@@ -1,6 +1,6 @@
 //! Reads off the interface of a state what the scene requests: leakage, percolation, stress below the surface.
 
-use crate::scenes::read::{RequestedLeakage, RequestedStress, SceneFile, stressed_body};
+use crate::scenes::read::{RequestedLeakage, RequestedStress, SceneFile};
 use contact_model::{
     Boundary, ContactState, Error, Field, InterfaceState, LargestStress, LeakageState, PathState, Result,
     Stop,
@@ -73,7 +73,8 @@ fn stress(
     of: &RequestedStress,
     stop: Stop<'_>,
 ) -> Result<LargestStress> {
-    let (body, poisson) = stressed_body(scene)
+    let (body, poisson) = of
+        .of_body(scene.pair, scene.effects.friction)
         .map_err(|wrong| Error::unsupported("the stress below the surface", wrong.to_string()))?;
     let fields = state.fields.as_ref().ok_or_else(|| missing("pressure"))?;
     let load = SurfaceLoad::of_state(fields, body)?;

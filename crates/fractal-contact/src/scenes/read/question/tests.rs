@@ -285,9 +285,9 @@ fn outputs() -> BoxedStrategy<RequestedOutputs> {
                     distributions,
                     grid_error,
                     statistics,
+                    interface,
                     curves,
                     drawn_states,
-                    interface,
                     ..RequestedOutputs::default()
                 };
                 for (output, asked) in
