@@ -129,6 +129,10 @@ pub struct Fields {
     pub slip: Option<[Field; 2]>,
     /// State of each cell, as [`StickSlip::value`].
     pub stick_slip: Option<Field>,
+    /// Pressure of a fluid in the gap; 0 in cells that no edge is connected to. A scene adds it, from the gap.
+    pub fluid_pressure: Option<Field>,
+    /// Flow of this fluid per width along x and along y, in volume per time and length; of a scene too.
+    pub flux: Option<[Field; 2]>,
 }
 
 impl Fields {

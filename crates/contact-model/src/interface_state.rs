@@ -40,8 +40,8 @@ pub struct PathState {
     pub contact: bool,
     /// Gap of the critical constriction, the narrowest cell of the widest path.
     pub constriction: f64,
-    /// Centre (x, y) of this cell.
-    pub centre: [f64; 2],
+    /// Centre (x, y) of this cell; `None` where the contact closes every path.
+    pub centre: Option<[f64; 2]>,
 }
 
 /// The largest equivalent stress of von Mises below the surface, at the centres of cells.

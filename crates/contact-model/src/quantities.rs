@@ -472,8 +472,8 @@ fn leaked(state: &ContactState, number: impl Fn(LeakageState) -> Option<f64>) ->
 }
 
 /// A number of the paths along x or along y.
-fn path(state: &ContactState, axis: usize, number: impl Fn(PathState) -> f64) -> Value {
-    state.interface.percolation.map(|paths| number(paths[axis])).into()
+fn path(state: &ContactState, axis: usize, number: impl Fn(PathState) -> Option<f64>) -> Value {
+    state.interface.percolation.and_then(|paths| number(paths[axis])).into()
 }
 
 /// A number of the largest stress.
@@ -635,41 +635,41 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
     "open_along_x" "open path along x" "" One; PERCOLATION;
         "1 where cells with a gap, joined by edges, lead between the opposite edges along x, otherwise 0"
         { drawn: false }
-        => |s, _| path(s, 0, |p| as_number(p.open));
+        => |s, _| path(s, 0, |p| Some(as_number(p.open)));
     "open_along_y" "open path along y" "" One; PERCOLATION;
         "1 where cells with a gap, joined by edges, lead between the opposite edges along y, otherwise 0"
         { drawn: false }
-        => |s, _| path(s, 1, |p| as_number(p.open));
+        => |s, _| path(s, 1, |p| Some(as_number(p.open)));
     "contact_along_x" "path of contact along x" "" One; PERCOLATION;
         "1 where cells in contact, joined by edges, lead between the opposite edges along x, otherwise 0"
         { drawn: false }
-        => |s, _| path(s, 0, |p| as_number(p.contact));
+        => |s, _| path(s, 0, |p| Some(as_number(p.contact)));
     "contact_along_y" "path of contact along y" "" One; PERCOLATION;
         "1 where cells in contact, joined by edges, lead between the opposite edges along y, otherwise 0"
         { drawn: false }
-        => |s, _| path(s, 1, |p| as_number(p.contact));
+        => |s, _| path(s, 1, |p| Some(as_number(p.contact)));
     "constriction_x" "critical constriction along x" "g_c" Si("m"); PERCOLATION;
         "gap of the critical constriction along x, the narrowest cell of the widest path; 0 where the contact closes every path"
-        => |s, _| path(s, 0, |p| p.constriction);
+        => |s, _| path(s, 0, |p| Some(p.constriction));
     "constriction_x_at_x" "place x of the constriction along x" "" Si("m"); PERCOLATION;
-        "centre of this cell, along x"
+        "centre of this cell, along x; empty where the contact closes every path"
         { average: Average::No, drawn: false }
-        => |s, _| path(s, 0, |p| p.centre[0]);
+        => |s, _| path(s, 0, |p| p.centre.map(|centre| centre[0]));
     "constriction_x_at_y" "place y of the constriction along x" "" Si("m"); PERCOLATION;
-        "centre of this cell, along y"
+        "centre of this cell, along y; empty where the contact closes every path"
         { average: Average::No, drawn: false }
-        => |s, _| path(s, 0, |p| p.centre[1]);
+        => |s, _| path(s, 0, |p| p.centre.map(|centre| centre[1]));
     "constriction_y" "critical constriction along y" "g_c" Si("m"); PERCOLATION;
         "gap of the critical constriction along y, the narrowest cell of the widest path; 0 where the contact closes every path"
-        => |s, _| path(s, 1, |p| p.constriction);
+        => |s, _| path(s, 1, |p| Some(p.constriction));
     "constriction_y_at_x" "place x of the constriction along y" "" Si("m"); PERCOLATION;
-        "centre of this cell, along x"
+        "centre of this cell, along x; empty where the contact closes every path"
         { average: Average::No, drawn: false }
-        => |s, _| path(s, 1, |p| p.centre[0]);
+        => |s, _| path(s, 1, |p| p.centre.map(|centre| centre[0]));
     "constriction_y_at_y" "place y of the constriction along y" "" Si("m"); PERCOLATION;
-        "centre of this cell, along y"
+        "centre of this cell, along y; empty where the contact closes every path"
         { average: Average::No, drawn: false }
-        => |s, _| path(s, 1, |p| p.centre[1]);
+        => |s, _| path(s, 1, |p| p.centre.map(|centre| centre[1]));
     "largest_von_mises" "largest stress below the surface" "\\sigma_v" Si("Pa"); STRESS_BELOW;
         "largest equivalent stress of von Mises at the centres of cells, in the requested range of depths"
         => |s, _| stressed(s, |l| Some(l.von_mises));

@@ -40,7 +40,7 @@ pub(crate) use interface_outputs::{RequestedInterface, RequestedLeakage, Request
 pub(crate) use load_kind::PrescribedLoad;
 pub(crate) use loads::{LoadList, LoadRequest};
 pub(crate) use numerics::{MOST_CELLS, Numerics};
-pub(crate) use outputs::{FieldFormat, HEIGHTS, RequestedOutputs, read_outputs};
+pub(crate) use outputs::{FieldFormat, HEIGHTS, RequestedOutputs, all_fields, read_outputs};
 pub(crate) use path::{PathPiece, cycles, step_to};
 pub(crate) use places::Places;
 pub(crate) use question::Question;

@@ -47,6 +47,43 @@ pub(crate) static HEIGHTS: FieldQuantity = FieldQuantity {
     take: |_| Vec::new(),
 };
 
+/// The pressure of a fluid that flows through the gap.
+pub(crate) static FLUID_PRESSURE: FieldQuantity = FieldQuantity {
+    name: "fluid_pressure",
+    words: "fluid pressure",
+    symbol: "",
+    unit: "Pa",
+    meaning: "pressure of the fluid that leaks, above that at the last edge; 0 where no edge is connected",
+    components: 1,
+    white_zero: true,
+    signed: false,
+    classes: &[],
+    outlined: true,
+    get: |fields| fields.fluid_pressure.as_slice(),
+    take: |fields| fields.fluid_pressure.take().into_iter().collect(),
+};
+
+/// The flow of this fluid.
+pub(crate) static FLUX: FieldQuantity = FieldQuantity {
+    name: "flux",
+    words: "flow per width",
+    symbol: "",
+    unit: "m^2/s",
+    meaning: "flow of the fluid that leaks, per width, along x and along y",
+    components: 2,
+    white_zero: true,
+    signed: false,
+    classes: &[],
+    outlined: false,
+    get: |fields| fields.flux.as_slice().as_flattened(),
+    take: |fields| fields.flux.take().into_iter().flatten().collect(),
+};
+
+/// Every field that a scene can write to files.
+pub(crate) fn all_fields() -> impl Iterator<Item = &'static FieldQuantity> {
+    [&HEIGHTS, &FLUID_PRESSURE, &FLUX].into_iter().chain(FIELDS)
+}
+
 /// The requested outputs: results of the models, and files.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RequestedOutputs {
@@ -56,6 +93,10 @@ pub struct RequestedOutputs {
     pub files: Vec<(Output, Vec<FieldFormat>)>,
     /// Formats of the heights as they are solved: after crop, fill and detrend, or as drawn.
     pub heights: Vec<FieldFormat>,
+    /// Formats of the pressure of the fluid that leaks.
+    pub fluid_pressure: Vec<FieldFormat>,
+    /// Formats of its flow per width.
+    pub flux: Vec<FieldFormat>,
     /// Distributions that are counted.
     pub distributions: Vec<Distributed>,
     /// Whether states of boundary elements are compared with those on coarser grids.
@@ -73,9 +114,7 @@ pub struct RequestedOutputs {
 impl RequestedOutputs {
     /// The fields with their formats; the heights belong to the first state.
     pub fn fields(&self) -> impl Iterator<Item = (&'static FieldQuantity, &[FieldFormat])> {
-        [(&HEIGHTS, &self.heights[..])]
-            .into_iter()
-            .chain(FIELDS.iter().map(|field| (field, self.formats(field))))
+        all_fields().map(|field| (field, self.formats(field)))
     }
 
     /// Whether a field of a state is drawn; the heights are those of every state.
@@ -86,6 +125,10 @@ impl RequestedOutputs {
 
     /// Formats of the files of a field.
     fn formats(&self, field: &FieldQuantity) -> &[FieldFormat] {
+        let own = [(&HEIGHTS, &self.heights), (&FLUID_PRESSURE, &self.fluid_pressure), (&FLUX, &self.flux)];
+        if let Some((_, formats)) = own.into_iter().find(|(own, _)| own.name == field.name) {
+            return formats;
+        }
         let asked = self.files.iter().find(|(output, _)| output.name() == field.name);
         asked.map_or(&[], |(_, formats)| formats)
     }
@@ -94,7 +137,9 @@ impl RequestedOutputs {
     /// contact is only rounding.
     pub(crate) fn request_what_files_need(&mut self) {
         let counts = |of: Distributed| self.distributions.contains(&of);
-        let outlined = self.files.iter().any(|(_, formats)| formats.contains(&FieldFormat::Png));
+        let fluid = [&self.fluid_pressure, &self.flux];
+        let mut formats = self.files.iter().map(|(_, formats)| formats).chain(fluid);
+        let outlined = formats.any(|formats| formats.contains(&FieldFormat::Png));
         let of_pressure = [Distributed::Pressure, Distributed::ContactPressure, Distributed::Gap].map(counts);
         self.outputs.pressure |= outlined || of_pressure.contains(&true);
         self.outputs.gap |= counts(Distributed::Gap) || self.interface.needs_gap();
@@ -111,6 +156,8 @@ impl RequestedOutputs {
         let of_models = Output::ALL.iter().map(|&output| (output.name(), self.outputs.asks(output)));
         let files = [
             (HEIGHTS.name, !self.heights.is_empty()),
+            (FLUID_PRESSURE.name, !self.fluid_pressure.is_empty()),
+            (FLUX.name, !self.flux.is_empty()),
             ("distributions", !self.distributions.is_empty()),
             ("grid_error", self.grid_error),
             ("leakage", self.interface.leakage.is_some()),
@@ -152,6 +199,22 @@ pub(crate) static OUTPUT_KEYS: KeyTable<RequestedOutputs> = KeyTable {
             default: "none",
             read: |requested, entry, _| read_formats(entry).map(|formats| requested.heights = formats),
             print: |requested, _| print_formats(&requested.heights),
+        },
+        Key {
+            name: "fluid_pressure",
+            takes: "formats",
+            about: "pressure of the fluid of `leakage` in each cell, above that at the last edge",
+            default: "none",
+            read: |requested, entry, _| read_formats(entry).map(|formats| requested.fluid_pressure = formats),
+            print: |requested, _| print_formats(&requested.fluid_pressure),
+        },
+        Key {
+            name: "flux",
+            takes: "formats",
+            about: "flow per width of the fluid of `leakage` in each cell, along x and along y; pictures have arrows",
+            default: "none",
+            read: |requested, entry, _| read_formats(entry).map(|formats| requested.flux = formats),
+            print: |requested, _| print_formats(&requested.flux),
         },
         Key {
             name: "curves",

@@ -760,7 +760,7 @@ fn check_coupling(scene: &SceneFile, places: &Places) -> ReadResult<()> {
 
 /// Checks that the interface of the scene has what is requested.
 fn check_interface(scene: &SceneFile, places: &Places) -> ReadResult<()> {
-    let requested = &scene.requested.interface;
+    let (outputs, requested) = (&scene.requested, &scene.requested.interface);
     let refused = |key: &str, message: String, help: &str| {
         Err(places.at_key(&format!("outputs.{key}"), message).with_help(help.to_owned()))
     };
@@ -775,6 +775,17 @@ fn check_interface(scene: &SceneFile, places: &Places) -> ReadResult<()> {
                 format!("`{key}` needs the {field} of each cell, which the model {model} does not compute");
             return refused(key, message, "boundary elements do: `models = [\"bem3d\"]`");
         }
+    }
+    let fields = [("fluid_pressure", &outputs.fluid_pressure), ("flux", &outputs.flux)];
+    if let Some((key, _)) = fields.into_iter().find(|(_, formats)| !formats.is_empty())
+        && requested.leakage.is_none()
+    {
+        let message = format!("`{key}` is requested without `leakage`, which names the fluid");
+        return refused(
+            key,
+            message,
+            "add `leakage = { viscosity = \"1 mPa s\", pressure_drop = \"1 bar\", along = \"x\" }` to [outputs]",
+        );
     }
     let undefined = scene.surface.given_map().map_or(0, |map| map.undefined());
     if requested.leakage.is_some() && undefined > 0 {

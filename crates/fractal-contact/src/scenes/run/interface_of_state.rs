@@ -12,18 +12,30 @@ use interface::{FlowAxis, FlowBounds, FlowOptions, leakage_until, percolation};
 ///
 /// # Errors
 /// Those of the crate `interface`; [`Error::Stopped`].
-pub(crate) fn with_interface(scene: &SceneFile, state: ContactState, stop: Stop<'_>) -> Result<ContactState> {
+pub(crate) fn with_interface(
+    scene: &SceneFile,
+    mut state: ContactState,
+    stop: Stop<'_>,
+) -> Result<ContactState> {
     let requested = &scene.requested.interface;
+    if requested.outputs().is_empty() {
+        return Ok(state);
+    }
     let boundary = scene.effects.boundary;
     let gap = requested.needs_gap().then(|| open_gap(&state)).transpose()?;
     let of_leakage = requested.leakage.zip(gap.as_ref());
     let of_paths = gap.as_ref().filter(|_| requested.percolation);
+    let flow = of_leakage.map(|(of, gap)| Flow::new(gap, of, boundary, stop)).transpose()?;
     let read_off = InterfaceState {
-        leakage: of_leakage.map(|(of, gap)| leakage(gap, of, boundary, stop)).transpose()?,
+        leakage: flow.as_ref().map(|flow| flow.numbers),
         percolation: of_paths.map(|gap| paths(gap, boundary)).transpose()?,
         stress: requested.stress_below.as_ref().map(|of| stress(scene, &state, of, stop)).transpose()?,
     };
-    Ok(state.with_interface(read_off))
+    let mut fields = state.fields.take().unwrap_or_default();
+    if let Some(flow) = flow {
+        (fields.fluid_pressure, fields.flux) = (Some(flow.pressure), Some(flow.flux));
+    }
+    Ok(state.with_interface(read_off).with_fields(fields))
 }
 
 /// The gap, 0 in contact. In cells in contact the solver leaves a small gap of either sign, so that contact is
@@ -41,16 +53,37 @@ fn missing(field: &str) -> Error {
     Error::unsupported("the interface", format!("a state without the field of the {field}"))
 }
 
-fn leakage(gap: &Field, of: RequestedLeakage, boundary: Boundary, stop: Stop<'_>) -> Result<LeakageState> {
-    let found = leakage_until(gap, of.along, boundary, FlowOptions::default(), stop)?;
-    let flow = found.flow_rate(of.pressure_drop, of.viscosity)?;
-    let FlowBounds { lower, upper } = flow.continuum.unwrap_or(flow.network);
-    Ok(LeakageState {
-        flow: flow.network.middle(),
-        error: 0.5 * flow.network.relative_width(),
-        continuum: [lower, upper],
-        flow_factor: found.flow_factor.map(FlowBounds::middle),
-    })
+/// The flow of a fluid through a gap.
+struct Flow {
+    numbers: LeakageState,
+    /// Pressure above that at the last edge.
+    pressure: Field,
+    /// Flow per width.
+    flux: [Field; 2],
+}
+
+impl Flow {
+    fn new(gap: &Field, of: RequestedLeakage, boundary: Boundary, stop: Stop<'_>) -> Result<Self> {
+        let RequestedLeakage { viscosity, pressure_drop, along } = of;
+        let found = leakage_until(gap, along, boundary, FlowOptions::default(), stop)?;
+        let flow = found.flow_rate(pressure_drop, viscosity)?;
+        let FlowBounds { lower, upper } = flow.continuum.unwrap_or(flow.network);
+        let numbers = LeakageState {
+            flow: flow.network.middle(),
+            error: 0.5 * flow.network.relative_width(),
+            continuum: [lower, upper],
+            flow_factor: found.flow_factor.map(FlowBounds::middle),
+        };
+        let scaled = |mut field: Field, factor: f64| {
+            for value in field.values_mut() {
+                *value *= factor;
+            }
+            field
+        };
+        let pressure = scaled(found.flow.potential, pressure_drop);
+        let flux = found.flow.flux.map(|flux| scaled(flux, pressure_drop / (12.0 * viscosity)));
+        Ok(Self { numbers, pressure, flux })
+    }
 }
 
 fn paths(gap: &Field, boundary: Boundary) -> Result<[PathState; 2]> {
@@ -61,7 +94,8 @@ fn paths(gap: &Field, boundary: Boundary) -> Result<[PathState; 2]> {
             open: found.spans,
             contact: found.contact_spans,
             constriction: cell.gap,
-            centre: [(cell.column as f64 + 0.5) * gap.dx(), (cell.row as f64 + 0.5) * gap.dy()],
+            centre: (cell.gap > 0.0)
+                .then_some([(cell.column as f64 + 0.5) * gap.dx(), (cell.row as f64 + 0.5) * gap.dy()]),
         })
     };
     Ok([along(FlowAxis::X)?, along(FlowAxis::Y)?])

@@ -1,10 +1,10 @@
 //! The stored results of a model, and the names of their files.
 
 use crate::scenes::plan::GridErrors;
-use crate::scenes::read::{Bin, Distributed, HEIGHTS, SceneFile, amount, words};
+use crate::scenes::read::{Bin, Distributed, SceneFile, all_fields, amount, words};
 use crate::scenes::run::{Folder, StoredFile, Warning};
 use contact_model::quantities::StateQuantity;
-use contact_model::{ContactState, FIELDS, Normalisation, Status};
+use contact_model::{ContactState, Normalisation, Status};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -174,7 +174,7 @@ pub(crate) fn field_of_file(name: &str) -> Option<FieldFile<'_>> {
     let (model, surface) = rest.rsplit_once('-')?;
     let file =
         FieldFile { field, model, surface: surface.parse().ok()?, state: state.parse().ok()?, extension };
-    let known = FIELDS.iter().chain([&HEIGHTS]).any(|known| known.name == field);
+    let known = all_fields().any(|known| known.name == field);
     (known && file.to_string() == name).then_some(file)
 }
 
