@@ -46,6 +46,11 @@ fn advice(warning: Warning) -> &'static str {
             "Where the surface goes on below undefined points, these cells carry too much, and the area is too small. Compare with \
              `fill=\"neighbours\"` of fc.read_surface or fc.press in the place of `undefined`, which gives these points heights."
         }
-        Warning::FewCells | Warning::Area | Warning::Accuracy | Warning::Stiffness => warning.advice(),
+        Warning::FewCells
+        | Warning::Area
+        | Warning::Accuracy
+        | Warning::Stiffness
+        | Warning::Lift
+        | Warning::Depths => warning.advice(),
     }
 }

@@ -353,7 +353,12 @@ impl FieldPicture<'_> {
 
 /// The name of a quantity with its unit, where it has one.
 fn with_unit(words: &str, unit: &str) -> String {
-    if unit.is_empty() { words.to_owned() } else { format!("{words} ({unit})") }
+    match unit {
+        "" => words.to_owned(),
+        // A power is set as such.
+        unit if unit.contains('^') => format!("{words} ($\\rm{{{unit}}}$)"),
+        unit => format!("{words} ({unit})"),
+    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use crate::scenes::plan::{GridErrors, is_tilted, within};
 use crate::scenes::read::{SceneFile, SceneSurface, amount, number};
 use contact_model::units::{ascii, rounded};
-use contact_model::{ContactState, Coupling, Friction, Hardness, Scene, Surface};
+use contact_model::{Body, ContactState, Coupling, Friction, Hardness, Pair, Scene, Surface};
 use serde::{Deserialize, Serialize};
 use surface_gen::MapEdges;
 
@@ -13,6 +13,12 @@ const FEW_CELLS: usize = 10;
 const ALONE: f64 = 0.5;
 /// The boundary cells of a resolved contact are less than this share of its area.
 const UNRESOLVED: f64 = 0.1;
+/// Pressure drop of a leaking fluid over the mean pressure above which the fluid is taken to lift the bodies.
+const LIFT: f64 = 0.1;
+/// The largest stress lies at an end of the depths where it is nearer to it than this share of their range.
+const END: f64 = 1e-3;
+/// Poisson's ratio from which on a body is taken for a rubber.
+const RUBBER: f64 = 0.49;
 /// Pressure over E* above which metals of unknown hardness are assumed to yield.
 const YIELD: f64 = 0.1;
 
@@ -45,11 +51,15 @@ pub enum Warning {
     Coupling,
     /// Cells in contact border undefined points.
     Rim,
+    /// The fluid that leaks would lift the bodies.
+    Lift,
+    /// The largest stress is at the first or last of the depths.
+    Depths,
 }
 
 impl Warning {
     /// All warnings, in the order in which they are printed.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 11] = [
         Self::FewCells,
         Self::OneCell,
         Self::Edge,
@@ -59,11 +69,17 @@ impl Warning {
         Self::Stiffness,
         Self::Coupling,
         Self::Rim,
+        Self::Lift,
+        Self::Depths,
     ];
 
     /// The remedy for contact at the edge of a map without a tilt.
     pub const EDGE_WITHOUT_TILT: &'static str = "With a free boundary the edge then decides the answer too. Use a larger map or a smaller \
         load, or choose `boundary = \"periodic\"` if the surface is a part of a larger one.";
+
+    /// What a high pressure on a rubber means, which does not yield.
+    const LARGE_STRAINS: &'static str = "This solution is one of small strains, so that its errors are about as large as these \
+        strains.";
 
     /// What stands in the row of the state.
     pub fn label(self) -> &'static str {
@@ -77,6 +93,8 @@ impl Warning {
             Self::Stiffness => "stiffness not known",
             Self::Coupling => "coupling of normal and tangential tractions neglected",
             Self::Rim => "contact beside undefined points",
+            Self::Lift => "fluid pressure not small beside the mean pressure",
+            Self::Depths => "largest stress at an end of the depths",
         }
     }
 
@@ -118,6 +136,13 @@ impl Warning {
                 "Where the surface goes on below undefined points, these cells carry too much, and the area is too small. Compare with \
                  `fill = \"neighbours\"` in the place of `undefined`, which gives these points heights."
             }
+            Self::Lift => {
+                "A fluid under pressure lifts the bodies and widens the gap, which is not computed: the true leakage is larger. Use a \
+                 smaller `pressure_drop`, or take the pressure of the fluid from that of the load."
+            }
+            Self::Depths => {
+                "It may be larger outside of their range. Add smaller or larger `depths` to `stress_below`."
+            }
         }
     }
 
@@ -146,9 +171,12 @@ impl Warning {
                     format!("{states} the pressure is above the hardness of {}{largest}.", pressure(hardness))
                 } else {
                     let limit = pressure(YIELD * scene.contact_modulus);
-                    format!(
-                        "{states} the pressure is above a tenth of E*, {limit}{largest}. No hardness is given; many materials yield at less."
-                    )
+                    let meaning = if has_rubber(scene.pair) {
+                        "A rubber then has large strains."
+                    } else {
+                        "No hardness is given; many materials yield at less."
+                    };
+                    format!("{states} the pressure is above a tenth of E*, {limit}{largest}. {meaning}")
                 }
             }
             Self::Area => {
@@ -181,12 +209,21 @@ impl Warning {
                     share.map_or_else(String::new, |share| format!(", up to {} of them", percent(share)));
                 format!("{states} cells in contact border undefined points{share}.")
             }
+            Self::Lift => {
+                let drop = scene.requested.interface.leakage.map_or(0.0, |leakage| leakage.pressure_drop);
+                format!(
+                    "{states} the pressure drop of the fluid, {}, is not small beside the mean pressure.",
+                    pressure(drop)
+                )
+            }
+            Self::Depths => format!("{states} the largest stress lies at the first or last of the depths."),
             Self::Coupling => {
                 format!("{states} the coupling of normal and tangential tractions is neglected.")
             }
         };
         let advice = match self {
             Self::Edge if !has_tilted_map(scene) => Self::EDGE_WITHOUT_TILT,
+            Self::Yield if scene.hardness.is_none() && has_rubber(scene.pair) => Self::LARGE_STRAINS,
             other => other.advice(),
         };
         format!("{what} {advice}")
@@ -203,6 +240,14 @@ impl Warning {
             },
             stiffness: scene.requested.outputs.stiffness,
             neglects_coupling: neglects_coupling(scene),
+            lifting_force: scene.requested.interface.leakage.map(|leakage| {
+                let size = scene.surface.size();
+                leakage.pressure_drop * size.x * size.y
+            }),
+            depths: scene.requested.interface.stress_below.as_ref().map(|stress| {
+                let depths = stress.depths.iter().copied();
+                [depths.clone().fold(f64::INFINITY, f64::min), depths.fold(0.0, f64::max)]
+            }),
         };
         let missed = scene.accuracy.is_some_and(|requested| {
             !errors.is_some_and(|errors| within(scene, errors, requested.target.share))
@@ -227,6 +272,10 @@ struct Circumstances {
     /// Whether the stiffness is requested.
     stiffness: bool,
     neglects_coupling: bool,
+    /// The pressure drop of a leaking fluid times the nominal area.
+    lifting_force: Option<f64>,
+    /// The smallest and the largest depth at which the stress is computed.
+    depths: Option<[f64; 2]>,
 }
 
 impl Circumstances {
@@ -237,6 +286,13 @@ impl Circumstances {
             (Warning::FewCells, _) => rests_on_few_cells(state),
             (Warning::Stiffness, _) => wanted && state.stiffness.is_none(),
             (Warning::Coupling, _) => self.neglects_coupling,
+            (Warning::Lift, _) => self.lifting_force.is_some_and(|lift| lift > LIFT * state.force),
+            (Warning::Depths, _) => state.interface.stress.zip(self.depths).is_some_and(|(stress, ends)| {
+                let [first, last] = ends;
+                let near = |end: f64| (stress.depth - end).abs() <= END * (last - first);
+                // At the surface itself there is nothing above.
+                stress.von_mises > 0.0 && (near(last) || first > 0.0 && near(first))
+            }),
             (_, None) => false,
             (Warning::Accuracy, _) => missed,
             (Warning::OneCell, Some(r)) => r.largest_share > ALONE,
@@ -276,6 +332,8 @@ impl StateNotes {
             },
             stiffness: scene.outputs.stiffness,
             neglects_coupling: scene.coupling("") == Ok(Some(Coupling::Neglected)),
+            lifting_force: None,
+            depths: None,
         })
     }
 
@@ -283,6 +341,12 @@ impl StateNotes {
     pub fn of(&self, state: &ContactState) -> Vec<Warning> {
         self.0.warnings(state, false)
     }
+}
+
+/// Whether a body is a rubber, which does not yield.
+fn has_rubber(pair: Option<Pair>) -> bool {
+    let is_rubber = |body: Body| matches!(body, Body::Elastic { poisson, .. } if poisson >= RUBBER);
+    pair.is_some_and(|Pair { first, second }| is_rubber(first) || is_rubber(second))
 }
 
 /// Whether the map of a scene is tilted, as far as it has one.
