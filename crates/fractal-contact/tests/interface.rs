@@ -1,8 +1,8 @@
 //! What a scene reads off the interface: leakage with its bounds, paths, and the stress below the surface.
 
-use fractal_contact::interface::{FlowAxis, leakage};
+use fractal_contact::interface::{FlowAxis, bracketed_force, leakage, open_gap, percolation};
 use fractal_contact::scenes::{Options, Plan, SceneFile, run};
-use fractal_contact::{Boundary, Field, Load};
+use fractal_contact::{Boundary, Error, Field, Load, never};
 use runs::{CsvFile, Silent};
 use std::path::Path;
 
@@ -95,4 +95,25 @@ fn a_path_leaks_too() {
     let directory = tempfile::tempdir().unwrap();
     let flow = column(&results(directory.path(), &path), "leakage");
     assert!(flow[1] > flow[0] && flow[0] > 0.0, "{flow:?}");
+}
+
+/// The load at which the gap closes lies between two states, and a bracket that is refined lies inside.
+#[test]
+fn the_gap_closes_between_two_loads() {
+    let directory = tempfile::tempdir().unwrap();
+    let text = ROUGH.replace("[0.01, 0.1]", "[0.1, 0.01, 0.03]");
+    results(directory.path(), &text);
+    let table = CsvFile::read(&directory.path().join("out/thresholds.csv")).unwrap();
+    let [before, after] = ["force_before", "force_after"].map(|name| table.numbers(name).unwrap()[0].unwrap());
+    assert!(before < after && after <= 0.1, "{before} {after}");
+    let scene = SceneFile::read(&directory.path().join("scene.toml")).unwrap();
+    let physics = scene.scene(&scene.models[0], scene.seed(0)).unwrap();
+    let mut contact = scene.models[0].model().prepare(&physics, scene.seed(0)).unwrap();
+    let is_closed = |state: &fractal_contact::ContactState| {
+        Ok(!percolation(&open_gap(state)?, 0.0, FlowAxis::X, Boundary::Periodic)?.spans)
+    };
+    let found = bracketed_force(contact.as_mut(), [before, after], 0.01, &never, is_closed).unwrap();
+    assert!(before <= found[0] && found[1] <= after && found[1] - found[0] <= 0.01 * found[1]);
+    let wrong = bracketed_force(contact.as_mut(), [after, 2.0 * after], 0.01, &never, is_closed);
+    assert!(matches!(wrong, Err(Error::Domain { .. })), "{wrong:?}");
 }

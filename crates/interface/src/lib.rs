@@ -10,6 +10,7 @@
 //! | [`percolation`](mod@percolation) | whether the open cells, or the cells in contact, lead from edge to edge, and the critical constriction |
 //! | [`leakage`](mod@leakage) | flow of a fluid or of a current between opposite edges, with bounds on both sides |
 //! | [`stress`] | the stress below the surface, and where it is largest |
+//! | [`open_gap`], [`bracketed_force`] | the gap of a state with 0 in contact; the force at which the interface closes, or a body yields |
 //!
 //! ```
 //! use contact_model::{Boundary, Field};
@@ -43,6 +44,7 @@ mod disjoint_sets;
 pub mod leakage;
 pub mod percolation;
 pub mod stress;
+mod thresholds;
 
 pub use axis::FlowAxis;
 pub use leakage::{
@@ -50,3 +52,4 @@ pub use leakage::{
     leakage, leakage_until,
 };
 pub use percolation::{Constriction, Percolation, percolation};
+pub use thresholds::{bracketed_force, open_gap};

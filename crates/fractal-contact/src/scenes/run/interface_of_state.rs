@@ -2,11 +2,11 @@
 
 use crate::scenes::read::{RequestedLeakage, RequestedStress, SceneFile};
 use contact_model::{
-    Boundary, ContactState, Error, Field, InterfaceState, LargestStress, LeakageState, PathState, Result,
-    Stop,
+    Boundary, ContactState, Error, Field, Fields, InterfaceState, LargestStress, LeakageState, PathState,
+    Result, Stop,
 };
 use interface::stress::{StressedBody, SurfaceLoad, largest_von_mises};
-use interface::{FlowAxis, FlowBounds, FlowOptions, leakage_until, percolation};
+use interface::{FlowAxis, FlowBounds, FlowOptions, leakage_until, open_gap, percolation};
 
 /// The state with what is read off its interface. Its fields have to be there.
 ///
@@ -36,21 +36,6 @@ pub(crate) fn with_interface(
         (fields.fluid_pressure, fields.flux) = (Some(flow.pressure), Some(flow.flux));
     }
     Ok(state.with_interface(read_off).with_fields(fields))
-}
-
-/// The gap, 0 in contact. In cells in contact the solver leaves a small gap of either sign, so that contact is
-/// where a cell bears a pressure, and where its gap is not larger than the largest one under a pressure.
-fn open_gap(state: &ContactState) -> Result<Field> {
-    let gap = state.gap().ok_or_else(|| missing("gap"))?;
-    let pressure = state.pressure().ok_or_else(|| missing("pressure"))?;
-    let cells = || gap.values().iter().zip(pressure.values());
-    let left = cells().filter(|(_, p)| **p > 0.0).fold(0.0_f64, |largest, (g, _)| largest.max(g.abs()));
-    let open = |(&g, &p): (&f64, &f64)| if p > 0.0 || g <= left { 0.0 } else { g };
-    Field::new(gap.cells(), gap.size(), cells().map(open).collect())
-}
-
-fn missing(field: &str) -> Error {
-    Error::unsupported("the interface", format!("a state without the field of the {field}"))
 }
 
 /// The flow of a fluid through a gap.
@@ -110,8 +95,8 @@ fn stress(
     let (body, poisson) = of
         .of_body(scene.pair, scene.effects.friction)
         .map_err(|wrong| Error::unsupported("the stress below the surface", wrong.to_string()))?;
-    let fields = state.fields.as_ref().ok_or_else(|| missing("pressure"))?;
-    let load = SurfaceLoad::of_state(fields, body)?;
+    let none = Fields::default();
+    let load = SurfaceLoad::of_state(state.fields.as_ref().unwrap_or(&none), body)?;
     let body = StressedBody { boundary: scene.effects.boundary, ..StressedBody::new(poisson) };
     let found = largest_von_mises(&load, body, &of.depths, stop)?;
     let factor = of.yield_stress.map(|stress| found.factor_until_yield(stress)).transpose()?;

@@ -19,6 +19,7 @@ pub(crate) mod statistics;
 pub(crate) mod statistics_files;
 pub(crate) mod summary;
 pub(crate) mod surface_report;
+pub(crate) mod thresholds;
 
 pub(crate) use ensemble::Mean;
 pub(crate) use report::Report;

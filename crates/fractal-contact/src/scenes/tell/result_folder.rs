@@ -2,7 +2,7 @@
 
 use crate::scenes::read::{Result, SceneFile};
 use crate::scenes::run::field_of_file;
-use crate::scenes::tell::{cycles, distributions, pictures, statistics};
+use crate::scenes::tell::{cycles, distributions, pictures, statistics, thresholds};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
@@ -50,8 +50,16 @@ impl ResultFolder {
     pub fn files(&self, scene: &SceneFile) -> BTreeSet<String> {
         let mut files = self.owned.clone();
         files.extend(
-            ["results.csv", "ensemble.csv", "patches.csv", cycles::FILE, "report.html", "manifest.json"]
-                .map(str::to_owned),
+            [
+                "results.csv",
+                "ensemble.csv",
+                "patches.csv",
+                cycles::FILE,
+                thresholds::FILE,
+                "report.html",
+                "manifest.json",
+            ]
+            .map(str::to_owned),
         );
         files.extend(pictures::curve_files(scene));
         files.extend(distributions::files(scene));
@@ -113,6 +121,7 @@ fn may_write(scene: &SceneFile, name: &str) -> bool {
         _ if statistics::FILES.contains(&name) => requested.statistics,
         "patches.csv" => requested.outputs.contact_patches,
         cycles::FILE => cycles::are_counted(scene),
+        thresholds::FILE => thresholds::are_told(scene),
         "ensemble.csv" => scene.sampling.surfaces > 1,
         _ if distributions::files(scene).iter().any(|file| file == name) => true,
         _ if requested.curves && pictures::curve_files(scene).iter().any(|file| file == name) => true,

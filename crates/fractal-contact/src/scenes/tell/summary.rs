@@ -6,7 +6,7 @@ use crate::scenes::run::StateRecord;
 use crate::scenes::tell::stated_error::{
     OF_GRID, OF_GRID_UNCONFIRMED, OF_SOLVER, PLUS_MINUS, relative_error, with_error,
 };
-use crate::scenes::tell::{Mean, StateTable, columns, cycles, ensemble};
+use crate::scenes::tell::{Mean, StateTable, columns, cycles, ensemble, thresholds};
 use contact_model::Value;
 use contact_model::quantities::{QuantityUnit, Role, StateQuantity};
 use contact_model::units::rounded;
@@ -428,7 +428,7 @@ fn of_paths(table: &StateTable<'_>, model: &str, mean: Option<&Mean>) -> Vec<Str
     };
     lines.retain(|line| !line.is_empty());
     let of_whole = lines.into_iter().map(|line| format!("path as a whole: {line}"));
-    of_whole.chain(cycles::lines(table, model)).collect()
+    of_whole.chain(cycles::lines(table, model)).chain(thresholds::lines(table, model)).collect()
 }
 
 #[cfg(test)]

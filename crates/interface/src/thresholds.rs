@@ -1,0 +1,100 @@
+//! The load at which something begins: the interface closes, or a body yields.
+//!
+//! A sweep of loads has a last state before it and a first one after it. [`bracketed_force`] solves loads between
+//! them, by halving, until the bracket is as narrow as requested. It needs a prepared contact of any model.
+
+use contact_model::{ContactState, Error, Field, Load, PreparedContact, Result, Stop};
+
+/// The gap of a state, 0 in contact.
+///
+/// In cells in contact the solver leaves a small gap of either sign. Contact is therefore where a cell bears a
+/// pressure, and where its gap is not larger than the largest one of these cells. Percolation and leakage take this
+/// gap.
+///
+/// Cost: O(N) for N cells.
+///
+/// # Errors
+/// [`Error::Unsupported`] for a state without the fields of the gap and of the pressure, which have to be requested
+/// of the model.
+///
+/// ```
+/// use contact_model::{ContactState, Field, Fields, SolveReport};
+/// let mut fields = Fields::default();
+/// fields.pressure = Some(Field::new([3, 1], [3.0, 1.0], vec![2.0, 0.0, 1.0])?);
+/// fields.gap = Some(Field::new([3, 1], [3.0, 1.0], vec![1e-17, 0.5, -2e-17])?);
+/// let state = ContactState::new(3.0, SolveReport::exact("by hand")).with_fields(fields);
+/// assert_eq!(interface::open_gap(&state)?.values(), [0.0, 0.5, 0.0]);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+pub fn open_gap(state: &ContactState) -> Result<Field> {
+    let missing = |field: &str| {
+        Error::unsupported("the interface", format!("a state without the field of the {field}"))
+    };
+    let gap = state.gap().ok_or_else(|| missing("gap"))?;
+    let pressure = state.pressure().ok_or_else(|| missing("pressure"))?;
+    let cells = || gap.values().iter().zip(pressure.values());
+    let left = cells().filter(|(_, p)| **p > 0.0).fold(0.0_f64, |largest, (g, _)| largest.max(g.abs()));
+    let open = |(&g, &p): (&f64, &f64)| if p > 0.0 || g <= left { 0.0 } else { g };
+    Field::new(gap.cells(), gap.size(), cells().map(open).collect())
+}
+
+/// Two normal forces between which something begins.
+///
+/// `is_reached` says of a state whether it has begun. It has to be false at the first of the `forces` and true at
+/// the second one; between them it is expected to change once. The bracket is halved until it is not wider than
+/// `share` of its upper end. For an elastic contact the gap falls everywhere as the force grows, so that the
+/// interface opens and closes at one force.
+///
+/// The states need the fields that `is_reached` looks at. For the closing of the gap:
+///
+/// ```no_run
+/// # use contact_model::{Boundary, PreparedContact, never};
+/// # use interface::{FlowAxis, bracketed_force, open_gap, percolation};
+/// # fn example(mut contact: Box<dyn PreparedContact>) -> contact_model::Result<()> {
+/// let closing = bracketed_force(contact.as_mut(), [0.01, 0.1], 1e-3, &never, |state| {
+///     Ok(!percolation(&open_gap(state)?, 0.0, FlowAxis::X, Boundary::Periodic)?.spans)
+/// })?;
+/// assert!(closing[1] - closing[0] <= 1e-3 * closing[1]);
+/// # Ok(())
+/// # }
+/// ```
+///
+/// Cost: two solves at the ends, and one for each halving, about `log2(1/share)`.
+///
+/// # Errors
+/// [`Error::Domain`] for forces that are not finite or not in this order, a share that is not positive, and where
+/// `is_reached` is not false at the first force and true at the second; errors of the solves and of `is_reached`.
+pub fn bracketed_force(
+    contact: &mut dyn PreparedContact,
+    forces: [f64; 2],
+    share: f64,
+    stop: Stop<'_>,
+    is_reached: impl Fn(&ContactState) -> Result<bool>,
+) -> Result<[f64; 2]> {
+    let [mut below, mut above] = forces;
+    if share.is_nan() || share <= 0.0 {
+        return Err(Error::of_positive("share", share));
+    }
+    if !(below.is_finite() && above.is_finite() && below < above) {
+        return Err(Error::domain(
+            "second force",
+            above,
+            format!("a number larger than the first force {below}"),
+        ));
+    }
+    let mut reached = |force: f64| is_reached(&contact.solve_until(Load::force(force), stop)?);
+    if reached(below)? {
+        return Err(Error::domain("first force", below, "a force at which it has not begun"));
+    }
+    if !reached(above)? {
+        return Err(Error::domain("second force", above, "a force at which it has begun"));
+    }
+    while above - below > share * above.abs() {
+        let middle = f64::midpoint(below, above);
+        if middle <= below || middle >= above {
+            break;
+        }
+        *(if reached(middle)? { &mut above } else { &mut below }) = middle;
+    }
+    Ok([below, above])
+}
