@@ -131,6 +131,8 @@ pub struct Fields {
     pub stick_slip: Option<Field>,
     /// Pressure of a fluid in the gap; 0 in cells that no edge is connected to. A scene adds it, from the gap.
     pub fluid_pressure: Option<Field>,
+    /// Equivalent stress of von Mises below each cell, at the depth where it is largest; of a scene too.
+    pub von_mises: Option<Field>,
     /// Flow of this fluid per width along x and along y, in volume per time and length; of a scene too.
     pub flux: Option<[Field; 2]>,
 }

@@ -13,6 +13,9 @@ pub struct InterfaceState {
     pub percolation: Option<[PathState; 2]>,
     /// The largest stress below the surface.
     pub stress: Option<LargestStress>,
+    /// How far the gap of any cell is at most from that of the exact solution on the same cells; `None` where no
+    /// bound is known.
+    pub gap_error: Option<f64>,
 }
 
 /// Flow of an incompressible fluid through the gap of a state, between opposite edges.
@@ -23,6 +26,9 @@ pub struct LeakageState {
     pub flow: f64,
     /// Half of the distance between these bounds, over the flow; 0 where no path leads through.
     pub error: f64,
+    /// Half of the difference between the flows with all gaps larger and all gaps smaller by `gap_error`, over the
+    /// flow; `None` where no bound of the gap is known, and without a flow.
+    pub contact_error: Option<f64>,
     /// Lower and upper bound of the flow through the continuum with a constant gap in each cell.
     pub continuum: [f64; 2],
     /// The flow over that between smooth surfaces at the mean gap, cells in contact counting as 0; `None` for

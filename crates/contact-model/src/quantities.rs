@@ -177,19 +177,23 @@ pub enum InterfaceOutput {
     StressBelow,
     /// The factor until a yield stress is reached there.
     YieldStress,
+    /// The gap of each cell, which leakage and paths need.
+    Gap,
 }
 
 impl InterfaceOutput {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Leakage, Self::Percolation, Self::StressBelow, Self::YieldStress];
+    pub const ALL: [Self; 5] =
+        [Self::Leakage, Self::Percolation, Self::StressBelow, Self::YieldStress, Self::Gap];
 
-    /// The key in `[outputs]` of a scene, and the key of its table where it is one.
+    /// The key in `[outputs]` of a scene, or in a table there.
     pub fn key(self) -> &'static str {
         match self {
             Self::Leakage => "leakage",
             Self::Percolation => "percolation",
             Self::StressBelow => "stress_below",
             Self::YieldStress => "yield_stress",
+            Self::Gap => "gap",
         }
     }
 }
@@ -277,6 +281,7 @@ impl AskedBy {
             Self::Interface(InterfaceOutput::YieldStress) => {
                 "`yield_stress` in `stress_below` of [outputs]".into()
             }
+            Self::Interface(InterfaceOutput::Gap) => "`leakage` or `percolation` in [outputs]".into(),
             Self::Interface(output) => format!("`{}` in [outputs]", output.key()),
             Self::AnyStiffness => "a stiffness or the conductance in [outputs]".into(),
             Self::AnyTangentialStiffness => "a tangential stiffness in [outputs]".into(),
@@ -777,10 +782,21 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
           average: Average::No, drawn: false }
         => |s, _| s.viscoelastic.and_then(|v| v.tangential_time_errors).map(|[_, displacement]| displacement).into();
     "leakage_error" "error of the leakage" "" One; LEAKAGE;
-        "half of the distance between the proven bounds of the network's flow, over the flow"
+        "proven relative error of the flow through the network of the cells: half of the distance between its bounds, over the flow"
         { role: Role::Residual("the flow through the network of the cells lies between two proven bounds: half of their distance, over the flow"),
           average: Average::No, drawn: false }
         => |s, _| leaked(s, |l| Some(l.error));
+    "leakage_contact_error" "error of the leakage by the gap" "" One; LEAKAGE;
+        "relative error of the leakage by the solve of the contact: half of the difference between the flows with all gaps larger and smaller by `gap_error`, over the flow; empty where that is not known"
+        { role: Role::Residual("the contact is solved well enough for the leakage: what the error of the gap changes in it, over the flow"),
+          average: Average::No, drawn: false }
+        => |s, _| leaked(s, |l| l.contact_error);
+    "gap_error" "error of the gap" "" Si("m"); AskedBy::Interface(InterfaceOutput::Gap);
+        "how far the gap of any cell is at most from that of the exact solution on the same cells; known for elastic half-spaces \
+         without adhesion and hardness, under a force or an approach"
+        { role: Role::Residual("the gap of each cell is that of the exact solution on these cells: the largest difference that is possible"),
+          average: Average::No, drawn: false }
+        => |s, _| s.interface.gap_error.into();
     "equilibrium" "equilibrium" "" One; Effect("adhesion");
         "largest difference of an attraction from the law of its gap, over the traction in contact"
         { role: Role::Residual("the attraction of each cell is what the law says of its gap: the largest difference, over the largest traction"),

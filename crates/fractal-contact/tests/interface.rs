@@ -1,8 +1,8 @@
 //! What a scene reads off the interface: leakage with its bounds, paths, and the stress below the surface.
 
-use fractal_contact::interface::{FlowAxis, bracketed_force, leakage, open_gap, percolation};
+use fractal_contact::interface::{FlowAxis, bracketed_force, gap_error, leakage, open_gap, percolation};
 use fractal_contact::scenes::{Options, Plan, SceneFile, run};
-use fractal_contact::{Boundary, Error, Field, Load, never};
+use fractal_contact::{Bem3d, Boundary, ContactModel, Error, Field, Load, Scene, Surface, never};
 use runs::{CsvFile, Silent};
 use std::path::Path;
 
@@ -104,7 +104,8 @@ fn the_gap_closes_between_two_loads() {
     let text = ROUGH.replace("[0.01, 0.1]", "[0.1, 0.01, 0.03]");
     results(directory.path(), &text);
     let table = CsvFile::read(&directory.path().join("out/thresholds.csv")).unwrap();
-    let [before, after] = ["force_before", "force_after"].map(|name| table.numbers(name).unwrap()[0].unwrap());
+    let [before, after] =
+        ["force_before", "force_after"].map(|name| table.numbers(name).unwrap()[0].unwrap());
     assert!(before < after && after <= 0.1, "{before} {after}");
     let scene = SceneFile::read(&directory.path().join("scene.toml")).unwrap();
     let physics = scene.scene(&scene.models[0], scene.seed(0)).unwrap();
@@ -116,4 +117,39 @@ fn the_gap_closes_between_two_loads() {
     assert!(before <= found[0] && found[1] <= after && found[1] - found[0] <= 0.01 * found[1]);
     let wrong = bracketed_force(contact.as_mut(), [after, 2.0 * after], 0.01, &never, is_closed);
     assert!(matches!(wrong, Err(Error::Domain { .. })), "{wrong:?}");
+}
+
+/// The gap of a solve with a large tolerance is as near to that of one with a small tolerance as its error says.
+#[test]
+fn the_error_of_the_gap_holds() {
+    let heights = fractal_contact::surface_gen::height_map(
+        &Surface::SelfAffine(fractal_contact::SelfAffine::new(2.2, 1.0, 0.01).unwrap()),
+        64,
+        5,
+    )
+    .unwrap();
+    let mut scene = Scene::new(Surface::Heights(heights), 1.0);
+    (scene.outputs.gap, scene.outputs.pressure, scene.outputs.stiffness) = (true, true, false);
+    let mut largest = 0.0_f64;
+    for boundary in [Boundary::Free, Boundary::Periodic] {
+        scene.effects.boundary = boundary;
+        for load in [Load::force(0.003), Load::force(0.03), Load::approach(0.02)] {
+            if boundary == Boundary::Periodic && load == Load::approach(0.02) {
+                continue;
+            }
+            let exact = Bem3d { tolerance: 1e-12, ..Bem3d::default() };
+            let exact = exact.prepare(&scene, 0).unwrap().solve(load).unwrap();
+            for tolerance in [0.1, 1e-2, 1e-3, 1e-4] {
+                let rough = Bem3d { tolerance, ..Bem3d::default() };
+                let state = rough.prepare(&scene, 0).unwrap().solve(load).unwrap();
+                let bound = gap_error(&state, load.normal).unwrap().unwrap();
+                let gaps = state.gap().unwrap().values().iter().zip(exact.gap().unwrap().values());
+                let error = gaps.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                assert!(error <= bound + 1e-10, "{boundary:?} {load:?} {tolerance}: {error} {bound}");
+                largest = largest.max(error / bound);
+            }
+        }
+    }
+    // The bound is not far from what happens.
+    assert!(largest > 0.2, "{largest}");
 }

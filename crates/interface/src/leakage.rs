@@ -357,12 +357,12 @@ fn solve(
     let forest = SpanningForest::new(&network, stop)?;
     let solved = solve_network(&network, &forest, options, stop)?;
     let currents = Currents::new(&network, &forest, &solved.potential);
-    (flow.network, flow.iterations) = (solved.bounds, solved.steps);
+    (flow.network, flow.iterations) = (solved.bounds.consistent(), solved.steps);
     flow.take_fields(&currents, &network, &solved.potential);
     if options.continuum {
         let lower = continuum::lower_bound(&network, conductivity, &currents);
         let (upper, steps) = continuum::upper_bound(&network, conductivity, &solved.potential, lower, stop)?;
-        flow.continuum = Some(FlowBounds { lower, upper });
+        flow.continuum = Some(FlowBounds { lower, upper }.consistent());
         flow.iterations += steps;
     }
     Ok(flow)
@@ -395,11 +395,12 @@ fn solve_network(
         drop(correction);
         check_stop(stop)?;
         let bounds = bounds(network, &Currents::new(network, forest, &potential));
-        let reached = bounds.relative_width();
+        // Bounds that contradict each other prove nothing.
+        let reached = if bounds.lower <= bounds.upper { bounds.relative_width() } else { f64::MAX };
         if reached < width {
             (best.potential, best.bounds) = (potential.clone(), bounds);
         }
-        if reached <= options.tolerance || reached > PROGRESS * width {
+        if reached <= options.tolerance || reached > PROGRESS * width && reached < f64::MAX {
             break;
         }
         width = reached;
@@ -420,7 +421,8 @@ impl SheetFlow {
             let cell = cell as usize;
             debug_assert!(network.node_of[cell] != NONE);
             let [before, behind, up, down] = currents.over_faces(node);
-            self.potential.values_mut()[cell] = potential.high[node];
+            // Where nearly nothing conducts, a potential may be rounded out of its range.
+            self.potential.values_mut()[cell] = potential.high[node].clamp(0.0, 1.0);
             flux_along.values_mut()[cell] = 0.5 * share * (down - up) / side_across;
             flux_across.values_mut()[cell] = 0.5 * share * (behind - before) / side_along;
         }

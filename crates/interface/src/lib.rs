@@ -10,7 +10,8 @@
 //! | [`percolation`](mod@percolation) | whether the open cells, or the cells in contact, lead from edge to edge, and the critical constriction |
 //! | [`leakage`](mod@leakage) | flow of a fluid or of a current between opposite edges, with bounds on both sides |
 //! | [`stress`] | the stress below the surface, and where it is largest |
-//! | [`open_gap`], [`bracketed_force`] | the gap of a state with 0 in contact; the force at which the interface closes, or a body yields |
+//! | [`open_gap`], [`gap_error`] | the gap of a state with 0 in contact, and its error by the solver |
+//! | [`bracketed_force`] | the force at which the interface closes, or a body yields |
 //!
 //! ```
 //! use contact_model::{Boundary, Field};
@@ -41,15 +42,17 @@
 
 mod axis;
 mod disjoint_sets;
+mod gap;
 pub mod leakage;
 pub mod percolation;
 pub mod stress;
 mod thresholds;
 
 pub use axis::FlowAxis;
+pub use gap::{gap_error, open_gap};
 pub use leakage::{
     FlowBounds, FlowOptions, FlowRate, Leakage, SheetFlow, conductance, conductance_until, flow_memory,
     leakage, leakage_until,
 };
 pub use percolation::{Constriction, Percolation, percolation};
-pub use thresholds::{bracketed_force, open_gap};
+pub use thresholds::bracketed_force;

@@ -3,40 +3,7 @@
 //! A sweep of loads has a last state before it and a first one after it. [`bracketed_force`] solves loads between
 //! them, by halving, until the bracket is as narrow as requested. It needs a prepared contact of any model.
 
-use contact_model::{ContactState, Error, Field, Load, PreparedContact, Result, Stop};
-
-/// The gap of a state, 0 in contact.
-///
-/// In cells in contact the solver leaves a small gap of either sign. Contact is therefore where a cell bears a
-/// pressure, and where its gap is not larger than the largest one of these cells. Percolation and leakage take this
-/// gap.
-///
-/// Cost: O(N) for N cells.
-///
-/// # Errors
-/// [`Error::Unsupported`] for a state without the fields of the gap and of the pressure, which have to be requested
-/// of the model.
-///
-/// ```
-/// use contact_model::{ContactState, Field, Fields, SolveReport};
-/// let mut fields = Fields::default();
-/// fields.pressure = Some(Field::new([3, 1], [3.0, 1.0], vec![2.0, 0.0, 1.0])?);
-/// fields.gap = Some(Field::new([3, 1], [3.0, 1.0], vec![1e-17, 0.5, -2e-17])?);
-/// let state = ContactState::new(3.0, SolveReport::exact("by hand")).with_fields(fields);
-/// assert_eq!(interface::open_gap(&state)?.values(), [0.0, 0.5, 0.0]);
-/// # Ok::<(), contact_model::Error>(())
-/// ```
-pub fn open_gap(state: &ContactState) -> Result<Field> {
-    let missing = |field: &str| {
-        Error::unsupported("the interface", format!("a state without the field of the {field}"))
-    };
-    let gap = state.gap().ok_or_else(|| missing("gap"))?;
-    let pressure = state.pressure().ok_or_else(|| missing("pressure"))?;
-    let cells = || gap.values().iter().zip(pressure.values());
-    let left = cells().filter(|(_, p)| **p > 0.0).fold(0.0_f64, |largest, (g, _)| largest.max(g.abs()));
-    let open = |(&g, &p): (&f64, &f64)| if p > 0.0 || g <= left { 0.0 } else { g };
-    Field::new(gap.cells(), gap.size(), cells().map(open).collect())
-}
+use contact_model::{ContactState, Error, Load, PreparedContact, Result, Stop};
 
 /// Two normal forces between which something begins.
 ///

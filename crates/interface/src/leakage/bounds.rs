@@ -25,6 +25,12 @@ impl FlowBounds {
         if self.upper > self.lower { (self.upper - self.lower) / self.upper } else { 0.0 }
     }
 
+    /// The same, or no lower bound where the two contradict each other: the contrast is then beyond what potentials of
+    /// twice the working precision hold.
+    pub(super) fn consistent(self) -> Self {
+        if self.lower <= self.upper { self } else { Self { lower: 0.0, upper: self.lower } }
+    }
+
     /// Whether a number lies between them.
     pub fn contains(self, value: f64) -> bool {
         (self.lower..=self.upper).contains(&value)

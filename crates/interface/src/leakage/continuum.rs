@@ -70,7 +70,7 @@ pub(super) fn lower_bound(network: &CellNetwork, conductivity: &[f64], currents:
             dissipation.add(resistance / 3.0 * (a * a + a * b + b * b), a.abs() + b.abs(), resistance);
         }
     }
-    dissipation.conductance(currents.total())
+    dissipation.conductance(currents)
 }
 
 /// The bound from above, and the steps of conjugate gradients that it took; `lower` is the bound from below

@@ -16,7 +16,7 @@ pub(super) struct Currents<'a> {
     forest: &'a SpanningForest,
     potential: &'a Potential,
     /// What was added to the current from each node to its parent.
-    correction: Vec<f64>,
+    correction: Vec<(f64, f64)>,
 }
 
 impl<'a> Currents<'a> {
@@ -29,9 +29,9 @@ impl<'a> Currents<'a> {
     pub fn between(&self, node: usize, other: usize, weight: f64) -> f64 {
         let current = weight * self.potential.above(node, other);
         if self.forest.parent[node] == other as u32 {
-            current + self.correction[node]
+            corrected(current, self.correction[node])
         } else if self.forest.parent[other] == node as u32 {
-            current - self.correction[other]
+            -corrected(-current, self.correction[other])
         } else {
             current
         }
@@ -40,7 +40,7 @@ impl<'a> Currents<'a> {
     /// Current from a node to an edge.
     pub fn to_edge(&self, node: usize, edge: u32) -> f64 {
         let current = self.network.edge_current(node, edge, self.potential);
-        if self.forest.parent[node] == edge { current + self.correction[node] } else { current }
+        if self.forest.parent[node] == edge { corrected(current, self.correction[node]) } else { current }
     }
 
     /// Currents out of a cell over its four faces, in the order of [`Layers::neighbours`].
@@ -71,6 +71,15 @@ impl<'a> Currents<'a> {
         sum((0..self.network.graph.nodes()).map(|node| -self.to_edge(node, SOURCE)))
     }
 
+    /// By how much these currents and their total may differ from currents that are exactly free of divergence:
+    /// the rounding of their sums, and that of the currents that the total has.
+    pub fn rounding(&self) -> [f64; 2] {
+        let nodes = || 0..self.network.graph.nodes();
+        let corrections = sum(self.correction.iter().map(|correction| correction.0.abs()));
+        let of_total = sum(nodes().map(|node| self.to_edge(node, SOURCE).abs()));
+        [CURRENT_ROUNDING * corrections, f64::EPSILON * of_total]
+    }
+
     /// What Thomson's principle makes of these currents: with the total current I and the dissipation W no
     /// conductance is below `I^2/W`, less its rounding.
     pub fn lower_bound(&self) -> f64 {
@@ -86,8 +95,16 @@ impl<'a> Currents<'a> {
                 }
             }
         }
-        dissipation.conductance(self.total())
+        dissipation.conductance(self)
     }
+}
+
+/// A current with what is added to it. Where the two nearly cancel each other the result has all digits.
+fn corrected(current: f64, (high, low): (f64, f64)) -> f64 {
+    let mut sum = Sum::from(current);
+    sum.add(high);
+    sum.add(low);
+    sum.value()
 }
 
 /// The dissipation of currents, with what bounds its rounding.
@@ -114,11 +131,12 @@ impl Dissipation {
         self.drops += current * resistance;
     }
 
-    /// The bound of the conductance that follows for this total current.
-    pub fn conductance(&self, total: f64) -> f64 {
-        let off = CURRENT_ROUNDING * self.currents;
+    /// The bound of the conductance that follows for these currents.
+    pub fn conductance(&self, currents: &Currents<'_>) -> f64 {
+        let [of_sums, of_total] = currents.rounding();
+        let off = CURRENT_ROUNDING * self.currents + of_sums;
         let power = self.power.value() + off * (2.0 * self.drops + off * self.resistances);
-        let total = (total.abs() - off).max(0.0);
+        let total = (currents.total().abs() - off - of_total).max(0.0);
         if power > 0.0 && power.is_finite() { total * (total / power) * (1.0 - ROUNDING) } else { 0.0 }
     }
 }

@@ -345,3 +345,43 @@ fn no_bit_depends_on_the_number_of_threads() {
     };
     assert_eq!(with(1), with(3));
 }
+
+/// Behind a constriction that conducts 10^-24 of what is before it, potentials differ from 1 by no more than the
+/// rounding of two numbers. The exact conductance was computed with fractions.
+#[test]
+fn bounds_hold_where_potentials_are_lost_in_rounding() {
+    let sides = [2.0 * 13.118_726_623_021_562, 2.0 * 0.012_750_527_070_610_607];
+    let values = vec![0.469_233_863_394_444_2, 0.331_370_398_340_935_3, 7.352_737_073_843_674e-9, 0.0];
+    let found = leakage(&Field::new([2, 2], sides, values).unwrap(), FlowAxis::Y, Boundary::Free).unwrap();
+    assert!(found.network.contains(4.089_880_826_007_546_7e-22), "{found:?}");
+    assert!(found.network.relative_width() < 1e-10);
+}
+
+/// Bounds are in their order whatever the gaps are.
+#[test]
+fn bounds_of_wild_maps_do_not_cross() {
+    let mut state = 1_u64;
+    let mut random = || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    for _ in 0..1500 {
+        let cells = [1 + (4.0 * random()) as usize, 1 + (4.0 * random()) as usize];
+        let decades = 20.0 * random();
+        let sides = [cells[0] as f64, cells[1] as f64 * 10_f64.powf(6.0 * random() - 3.0)];
+        let gap = |open: f64, power: f64| if open < 0.2 { 0.0 } else { 10_f64.powf(-decades * power) };
+        let values = (0..cells[0] * cells[1]).map(|_| gap(random(), random())).collect();
+        let gap = Field::new(cells, sides, values).unwrap();
+        let boundary = [Boundary::Free, Boundary::Periodic][usize::from(random() < 0.5)];
+        let axis = [FlowAxis::X, FlowAxis::Y][usize::from(random() < 0.5)];
+        let Ok(found) = leakage(&gap, axis, boundary) else { continue };
+        let continuum = found.continuum.unwrap();
+        assert!(found.network.lower <= found.network.upper, "{gap:?} {axis:?} {boundary:?} {found:?}");
+        assert!(continuum.lower <= continuum.upper, "{gap:?} {axis:?} {boundary:?} {found:?}");
+        // The harmonic network underestimates the continuum.
+        let slack = 1.0 + 1e-9;
+        assert!(found.network.lower <= continuum.upper * slack, "{gap:?} {axis:?} {boundary:?} {found:?}");
+        let inside = found.flow.potential.values().iter().all(|p| (0.0..=1.0).contains(p));
+        assert!(inside, "{gap:?} {axis:?} {boundary:?} {found:?}");
+    }
+}

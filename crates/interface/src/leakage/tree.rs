@@ -84,14 +84,15 @@ impl SpanningForest {
     /// What has to be added to the current from each node to its parent, so that as much flows into every
     /// node as out of it. The currents on the other conductors stay as they are.
     ///
-    /// The sums are carried out to twice the working precision, so that what remains is far below the
-    /// rounding of a current.
-    pub fn correction(&self, network: &CellNetwork, potential: &Potential) -> Vec<f64> {
+    /// The sums are carried out to twice the working precision, and so are the results: behind a narrow
+    /// constriction the current of a potential that is rounded may be far larger than the true one, which is
+    /// what remains of both.
+    pub fn correction(&self, network: &CellNetwork, potential: &Potential) -> Vec<(f64, f64)> {
         let mut surplus = network.surplus(potential);
-        let mut correction = vec![0.0; self.parent.len()];
+        let mut correction = vec![(0.0, 0.0); self.parent.len()];
         for &node in self.order.iter().rev() {
             let given = surplus[node as usize];
-            correction[node as usize] = given.0;
+            correction[node as usize] = given;
             if let Some(parent) = surplus.get_mut(self.parent[node as usize] as usize) {
                 // The first numbers are added exactly, the rest is rounded.
                 let mut sum = Sum::from(parent.0);

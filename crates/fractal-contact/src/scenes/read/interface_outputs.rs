@@ -46,6 +46,7 @@ impl RequestedInterface {
             InterfaceOutput::Leakage => self.leakage.is_some(),
             InterfaceOutput::Percolation => self.percolation,
             InterfaceOutput::StressBelow => self.stress_below.is_some(),
+            InterfaceOutput::Gap => self.needs_gap(),
             InterfaceOutput::YieldStress => {
                 self.stress_below.as_ref().is_some_and(|stress| stress.yield_stress.is_some())
             }

@@ -79,9 +79,25 @@ pub(crate) static FLUX: FieldQuantity = FieldQuantity {
     take: |fields| fields.flux.take().into_iter().flatten().collect(),
 };
 
+/// The stress below the surface.
+pub(crate) static VON_MISES: FieldQuantity = FieldQuantity {
+    name: "von_mises",
+    words: "von Mises stress below the surface",
+    symbol: "\\sigma_v",
+    unit: "Pa",
+    meaning: "equivalent stress of von Mises below each cell, at the depth where the largest one is",
+    components: 1,
+    white_zero: true,
+    signed: false,
+    classes: &[],
+    outlined: true,
+    get: |fields| fields.von_mises.as_slice(),
+    take: |fields| fields.von_mises.take().into_iter().collect(),
+};
+
 /// Every field that a scene can write to files.
 pub(crate) fn all_fields() -> impl Iterator<Item = &'static FieldQuantity> {
-    [&HEIGHTS, &FLUID_PRESSURE, &FLUX].into_iter().chain(FIELDS)
+    [&HEIGHTS, &FLUID_PRESSURE, &FLUX, &VON_MISES].into_iter().chain(FIELDS)
 }
 
 /// The requested outputs: results of the models, and files.
@@ -97,6 +113,8 @@ pub struct RequestedOutputs {
     pub fluid_pressure: Vec<FieldFormat>,
     /// Formats of its flow per width.
     pub flux: Vec<FieldFormat>,
+    /// Formats of the stress at the depth of the largest one.
+    pub von_mises: Vec<FieldFormat>,
     /// Distributions that are counted.
     pub distributions: Vec<Distributed>,
     /// Whether states of boundary elements are compared with those on coarser grids.
@@ -105,6 +123,8 @@ pub struct RequestedOutputs {
     pub statistics: bool,
     /// What is read off the interface.
     pub interface: RequestedInterface,
+    /// Whether the law of the interface is written, for other programs.
+    pub law: bool,
     /// Whether curves are drawn.
     pub curves: bool,
     /// Numbers of the loads or steps whose fields are drawn; `None` means all.
@@ -125,7 +145,12 @@ impl RequestedOutputs {
 
     /// Formats of the files of a field.
     fn formats(&self, field: &FieldQuantity) -> &[FieldFormat] {
-        let own = [(&HEIGHTS, &self.heights), (&FLUID_PRESSURE, &self.fluid_pressure), (&FLUX, &self.flux)];
+        let own = [
+            (&HEIGHTS, &self.heights),
+            (&FLUID_PRESSURE, &self.fluid_pressure),
+            (&FLUX, &self.flux),
+            (&VON_MISES, &self.von_mises),
+        ];
         if let Some((_, formats)) = own.into_iter().find(|(own, _)| own.name == field.name) {
             return formats;
         }
@@ -137,12 +162,13 @@ impl RequestedOutputs {
     /// contact is only rounding.
     pub(crate) fn request_what_files_need(&mut self) {
         let counts = |of: Distributed| self.distributions.contains(&of);
-        let fluid = [&self.fluid_pressure, &self.flux];
-        let mut formats = self.files.iter().map(|(_, formats)| formats).chain(fluid);
+        let read_off = [&self.fluid_pressure, &self.flux, &self.von_mises];
+        let mut formats = self.files.iter().map(|(_, formats)| formats).chain(read_off);
         let outlined = formats.any(|formats| formats.contains(&FieldFormat::Png));
         let of_pressure = [Distributed::Pressure, Distributed::ContactPressure, Distributed::Gap].map(counts);
         self.outputs.pressure |= outlined || of_pressure.contains(&true);
         self.outputs.gap |= counts(Distributed::Gap) || self.interface.needs_gap();
+        self.outputs.mean_gap |= self.law;
         // Contact is where there is a pressure.
         self.outputs.pressure |= !self.interface.outputs().is_empty();
         self.outputs.contact_patches |= counts(Distributed::Patches);
@@ -158,11 +184,13 @@ impl RequestedOutputs {
             (HEIGHTS.name, !self.heights.is_empty()),
             (FLUID_PRESSURE.name, !self.fluid_pressure.is_empty()),
             (FLUX.name, !self.flux.is_empty()),
+            (VON_MISES.name, !self.von_mises.is_empty()),
             ("distributions", !self.distributions.is_empty()),
             ("grid_error", self.grid_error),
             ("leakage", self.interface.leakage.is_some()),
             ("percolation", self.interface.percolation),
             ("stress_below", self.interface.stress_below.is_some()),
+            ("law", self.law),
             ("curves", self.curves),
             ("statistics", self.statistics),
         ];
@@ -215,6 +243,22 @@ pub(crate) static OUTPUT_KEYS: KeyTable<RequestedOutputs> = KeyTable {
             default: "none",
             read: |requested, entry, _| read_formats(entry).map(|formats| requested.flux = formats),
             print: |requested, _| print_formats(&requested.flux),
+        },
+        Key {
+            name: "von_mises",
+            takes: "formats",
+            about: "equivalent stress below each cell, at the depth at which `stress_below` finds the largest one",
+            default: "none",
+            read: |requested, entry, _| read_formats(entry).map(|formats| requested.von_mises = formats),
+            print: |requested, _| print_formats(&requested.von_mises),
+        },
+        Key {
+            name: "law",
+            takes: "`true` or `false`",
+            about: "`law.csv`, which other programs take: mean gap, contact fraction, stiffness, conductance and flow factor over the mean pressure, as far as they are requested, each with its error and over all surfaces; of periodic boundaries",
+            default: "`false`",
+            read: |requested, entry, _| entry.flag().map(|law| requested.law = law),
+            print: |requested, _| requested.law.then(|| "true".to_owned()),
         },
         Key {
             name: "curves",

@@ -758,6 +758,10 @@ fn check_coupling(scene: &SceneFile, places: &Places) -> ReadResult<()> {
     }
 }
 
+const LEAKAGE_EXAMPLE: &str =
+    "add `leakage = { viscosity = \"1 mPa s\", pressure_drop = \"1 bar\", along = \"x\" }` to [outputs]";
+const STRESS_EXAMPLE: &str = "add `stress_below = { depths = [\"1 um\", \"2 um\", \"5 um\"] }` to [outputs]";
+
 /// Checks that the interface of the scene has what is requested.
 fn check_interface(scene: &SceneFile, places: &Places) -> ReadResult<()> {
     let (outputs, requested) = (&scene.requested, &scene.requested.interface);
@@ -776,16 +780,24 @@ fn check_interface(scene: &SceneFile, places: &Places) -> ReadResult<()> {
             return refused(key, message, "boundary elements do: `models = [\"bem3d\"]`");
         }
     }
-    let fields = [("fluid_pressure", &outputs.fluid_pressure), ("flux", &outputs.flux)];
-    if let Some((key, _)) = fields.into_iter().find(|(_, formats)| !formats.is_empty())
-        && requested.leakage.is_none()
-    {
-        let message = format!("`{key}` is requested without `leakage`, which names the fluid");
-        return refused(
-            key,
-            message,
-            "add `leakage = { viscosity = \"1 mPa s\", pressure_drop = \"1 bar\", along = \"x\" }` to [outputs]",
-        );
+    let fields = [
+        ("fluid_pressure", &outputs.fluid_pressure, requested.leakage.is_none(), LEAKAGE_EXAMPLE),
+        ("flux", &outputs.flux, requested.leakage.is_none(), LEAKAGE_EXAMPLE),
+        ("von_mises", &outputs.von_mises, requested.stress_below.is_none(), STRESS_EXAMPLE),
+    ];
+    if let Some((key, _, _, help)) = fields.iter().find(|(_, asked, lacks, _)| *lacks && !asked.is_empty()) {
+        let missing = if *help == STRESS_EXAMPLE { "stress_below" } else { "leakage" };
+        return refused(key, format!("`{key}` is requested without `{missing}`"), help);
+    }
+    if outputs.law {
+        if scene.effects.boundary != Boundary::Periodic {
+            let message = "the law of an interface with free boundaries: it has no mean gap".to_owned();
+            return refused("law", message, "add `boundary = \"periodic\"` to [effects]");
+        }
+        if matches!(scene.request, LoadRequest::Path(_)) {
+            let message = "the law of an interface along a path: it would depend on the path".to_owned();
+            return refused("law", message, "prescribe `mean_pressure` or `mean_gap` in a list");
+        }
     }
     let undefined = scene.surface.given_map().map_or(0, |map| map.undefined());
     if requested.leakage.is_some() && undefined > 0 {

@@ -211,7 +211,7 @@ impl ContactInHand<'_, '_> {
                 Ok(loads) => self
                     .contact
                     .solve_until(loads[index], self.stop)
-                    .and_then(|state| with_interface(self.scene, state, self.stop)),
+                    .and_then(|state| with_interface(self.scene, loads[index].normal, state, self.stop)),
                 // A surface without an rms height has no F_bar: no load has an answer, and each row says so.
                 Err(error) => Err(error.clone()),
             };
@@ -302,7 +302,7 @@ impl ContactInHand<'_, '_> {
                 Err(contact_model::Error::Stopped { .. }) => Ok(None),
                 // To its end: what the contact remembers belongs to the state that has been solved.
                 Ok(state) => {
-                    let state = with_interface(self.scene, state, &never)?;
+                    let state = with_interface(self.scene, step.load.normal, state, &never)?;
                     Ok(Some((largest.enter(step.load.normal, state), true)))
                 }
                 // The best state of a solve that missed its tolerance or, beyond the pull-off force, the last

@@ -1,7 +1,9 @@
 //! The files of a run as bytes. Whoever asks for them decides where they go.
 
 use crate::scenes::read::{Result, words};
-use crate::scenes::tell::{MapStatisticsTables, StateTable, cycles, distributions, pictures, thresholds};
+use crate::scenes::tell::{
+    MapStatisticsTables, StateTable, cycles, distributions, law, pictures, thresholds,
+};
 use contact_model::Table;
 use runs::{Header, csv_bytes};
 
@@ -27,6 +29,9 @@ pub(crate) fn make(
     }
     if cycles::are_counted(states.scene) {
         receive(cycles::FILE, csv_bytes(&cycles::table(states)?, header))?;
+    }
+    if requested.law {
+        receive(law::FILE, csv_bytes(&law::table(states)?, header))?;
     }
     if thresholds::are_told(states.scene) {
         receive(thresholds::FILE, csv_bytes(&thresholds::table(states)?, header))?;

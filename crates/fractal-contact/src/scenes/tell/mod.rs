@@ -6,6 +6,7 @@ pub(crate) mod distributions;
 pub(crate) mod ensemble;
 pub(crate) mod files;
 pub(crate) mod info;
+pub(crate) mod law;
 pub(crate) mod manifest;
 pub(crate) mod page;
 pub(crate) mod pictures;
@@ -91,7 +92,7 @@ mod tests {
                 let leakage = RequestedLeakage { viscosity: 1.0, pressure_drop: 1.0, along };
                 scene.requested.interface.leakage = Some(leakage);
             }
-            AskedBy::Interface(InterfaceOutput::Percolation) => {
+            AskedBy::Interface(InterfaceOutput::Percolation | InterfaceOutput::Gap) => {
                 scene.requested.interface.percolation = true;
             }
             AskedBy::Interface(InterfaceOutput::StressBelow | InterfaceOutput::YieldStress) => {

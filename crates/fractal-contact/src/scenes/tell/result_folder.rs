@@ -2,7 +2,7 @@
 
 use crate::scenes::read::{Result, SceneFile};
 use crate::scenes::run::field_of_file;
-use crate::scenes::tell::{cycles, distributions, pictures, statistics, thresholds};
+use crate::scenes::tell::{cycles, distributions, law, pictures, statistics, thresholds};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Component, Path, PathBuf};
@@ -121,6 +121,7 @@ fn may_write(scene: &SceneFile, name: &str) -> bool {
         _ if statistics::FILES.contains(&name) => requested.statistics,
         "patches.csv" => requested.outputs.contact_patches,
         cycles::FILE => cycles::are_counted(scene),
+        law::FILE => requested.law,
         thresholds::FILE => thresholds::are_told(scene),
         "ensemble.csv" => scene.sampling.surfaces > 1,
         _ if distributions::files(scene).iter().any(|file| file == name) => true,

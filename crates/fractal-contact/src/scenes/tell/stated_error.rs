@@ -18,7 +18,7 @@ pub(crate) const OF_SOLVER: &str = "The number behind ± is the estimated error 
                                    contain the error of the grid, which `grid_error = true` in [outputs] estimates for loads that do not form a path.";
 
 /// Quantities whose relative error on the cells that were solved is another quantity.
-const SOLVER_ERRORS: [(&str, &str); 15] = [
+const SOLVER_ERRORS: [(&str, &str); 17] = [
     ("force", "force_error"),
     ("stiffness", "stiffness_error"),
     ("tangential_stiffness", "tangential_stiffness_error"),
@@ -34,6 +34,8 @@ const SOLVER_ERRORS: [(&str, &str); 15] = [
     ("tangential_displacement_y", "tangential_displacement_time_error"),
     ("area", "area_time_error"),
     ("contact_fraction", "area_time_error"),
+    ("leakage", "leakage_error"),
+    ("leakage", "leakage_contact_error"),
 ];
 
 /// The estimated relative error of a quantity of a state: that of the grid and that of the solver, as far as

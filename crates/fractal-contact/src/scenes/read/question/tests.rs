@@ -269,7 +269,7 @@ fn outputs() -> BoxedStrategy<RequestedOutputs> {
     ];
     let numbers = vec(any::<bool>(), Output::ALL.len());
     let distributions = subsequence(Distributed::ALL.map(|(_, of)| of).to_vec(), 0..=4);
-    let flags = (any::<bool>(), any::<bool>(), any::<bool>(), of(vec(0..5_usize, 0..3)), interface());
+    let flags = (any::<bool>(), any::<bool>(), any::<[bool; 2]>(), of(vec(0..5_usize, 0..3)), interface());
     (numbers, formats(), formats(), conductance, distributions, flags)
         .prop_map(
             |(
@@ -278,7 +278,7 @@ fn outputs() -> BoxedStrategy<RequestedOutputs> {
                 heights,
                 conductance,
                 distributions,
-                (grid_error, statistics, curves, drawn_states, interface),
+                (grid_error, statistics, [curves, law], drawn_states, interface),
             )| {
                 let mut requested = RequestedOutputs {
                     heights,
@@ -286,6 +286,7 @@ fn outputs() -> BoxedStrategy<RequestedOutputs> {
                     grid_error,
                     statistics,
                     interface,
+                    law,
                     curves,
                     drawn_states,
                     ..RequestedOutputs::default()

@@ -1,0 +1,135 @@
+//! The law of an interface, which other programs take: what it bears and lets through over its mean gap.
+
+use crate::scenes::read::Result;
+use crate::scenes::run::{SolvedUnit, StateRecord};
+use crate::scenes::tell::stated_error::relative_error;
+use crate::scenes::tell::{StateTable, columns};
+use analysis::{half_width_of_mean, mean_and_deviation};
+use contact_model::quantities::StateQuantity;
+use contact_model::{Column, Table, Value};
+
+/// The file with the law.
+pub(crate) const FILE: &str = "law.csv";
+
+/// One number of the law.
+struct Member {
+    /// The quantity of the states.
+    of: &'static str,
+    /// Its column, and that of its error.
+    columns: [&'static str; 2],
+    /// Its unit; empty for that of the quantity per nominal area.
+    unit: &'static str,
+    meaning: &'static str,
+}
+
+const MEMBERS: [Member; 5] = [
+    Member {
+        of: "mean_gap",
+        columns: ["mean_gap", "mean_gap_error"],
+        unit: "m",
+        meaning: "distance of the mean planes of both surfaces",
+    },
+    Member {
+        of: "contact_fraction",
+        columns: ["contact_fraction", "contact_fraction_error"],
+        unit: "1",
+        meaning: "real contact area over the nominal one",
+    },
+    Member {
+        of: "stiffness",
+        columns: ["stiffness_per_area", "stiffness_per_area_error"],
+        unit: "Pa/m",
+        meaning: "growth of the mean pressure for each unit by which the mean gap falls",
+    },
+    Member {
+        of: "conductance",
+        columns: ["conductance_per_area", "conductance_per_area_error"],
+        unit: "",
+        meaning: "conductance through the contact, per nominal area",
+    },
+    Member {
+        of: "flow_factor",
+        columns: ["flow_factor", "flow_factor_error"],
+        unit: "1",
+        meaning: "flow along the interface over that between smooth surfaces at the mean gap",
+    },
+];
+
+/// A mean over surfaces and its error: that of the grid and the solver, and half of the 95 % interval of the mean.
+fn mean_with_error(records: &[&StateRecord], of: &StateQuantity, scale: f64) -> Option<(f64, Option<f64>)> {
+    let number = |record: &&StateRecord| {
+        let solved = record.converged()?;
+        of.number(&solved.state, &solved.normalisation)
+    };
+    let values = records.iter().map(number).collect::<Option<Vec<f64>>>()?;
+    let (mean, deviation) = mean_and_deviation(&values)?;
+    // The flow factor is the leakage over a number of the gap.
+    let with_error = if of.name == "flow_factor" { StateQuantity::named("leakage")? } else { of };
+    let errors: Vec<f64> = records
+        .iter()
+        .zip(&values)
+        .filter_map(|(record, value)| Some(value.abs() * relative_error(record, with_error)?))
+        .collect();
+    let of_cells = mean_and_deviation(&errors).map(|(mean, _)| mean);
+    let of_mean = deviation.map(|deviation| half_width_of_mean(deviation, values.len()));
+    let error = match (of_cells, of_mean) {
+        (None, None) => None,
+        (cells, mean) => Some(cells.unwrap_or(0.0) + mean.unwrap_or(0.0)),
+    };
+    Some((scale * mean, error.map(|error| scale * error)))
+}
+
+/// One row for each load of each model, means over the surfaces, in the order of growing pressures.
+pub(crate) fn table(states: &StateTable<'_>) -> Result<Table> {
+    let scene = states.scene;
+    let area = scene.surface.size().area();
+    let members: Vec<(&Member, &StateQuantity)> = MEMBERS
+        .iter()
+        .filter_map(|member| Some((member, columns::asked(scene).find(|asked| asked.name == member.of)?)))
+        .collect();
+    let mut all = vec![columns::plain(columns::MODEL)];
+    let pascal = scene.system.unit("Pa");
+    all.push(Column { name: "mean_pressure", unit: pascal, meaning: "normal force over the nominal area" });
+    for (member, quantity) in &members {
+        let unit = match (member.unit, quantity.unit.si(&scene.requested.outputs)) {
+            ("", "S") => "S/m^2",
+            ("", _) => "W/(m^2 K)",
+            (unit, _) => unit,
+        };
+        let unit = scene.system.unit(unit);
+        let [name, error] = member.columns;
+        all.push(Column { name, unit, meaning: member.meaning });
+        let meaning = "its error: that of the grid and of the solver, as far as they are known, and half of the 95 % \
+                       interval of the mean over several surfaces";
+        all.push(Column { name: error, unit, meaning });
+    }
+    let mut table = Table::new(format!("{}: law of the interface", states.title), all);
+    for model in scene.models.iter().map(crate::scenes::Numerics::name) {
+        let units: Vec<&SolvedUnit<'_>> = states.units.iter().filter(|unit| unit.model == model).collect();
+        let mut rows: Vec<(f64, Vec<Value>)> = Vec::new();
+        for state in 0..scene.request.count() {
+            let of_unit = |unit: &&SolvedUnit<'_>| unit.states.iter().find(|record| record.index == state);
+            let Some(records) = units.iter().map(|unit| of_unit(unit)).collect::<Option<Vec<_>>>() else {
+                continue;
+            };
+            let Some((pressure, _)) =
+                StateQuantity::named("force").and_then(|force| mean_with_error(&records, force, 1.0 / area))
+            else {
+                continue;
+            };
+            let mut row: Vec<Value> = vec![model.into(), pressure.into()];
+            for (member, quantity) in &members {
+                let per_area = ["stiffness", "conductance"].contains(&member.of);
+                let found = mean_with_error(&records, quantity, if per_area { 1.0 / area } else { 1.0 });
+                row.push(found.map(|(mean, _)| mean).into());
+                row.push(found.and_then(|(_, error)| error).into());
+            }
+            rows.push((pressure, row));
+        }
+        rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, row) in rows {
+            table.push(row).map_err(runs::Error::model("the law of the interface"))?;
+        }
+    }
+    Ok(table)
+}
