@@ -13,6 +13,7 @@ mod ensemble;
 mod errors;
 mod exclusive;
 mod height_map;
+mod interface;
 mod io;
 mod load_order;
 mod loads;
@@ -47,6 +48,10 @@ mod _core {
     use crate::ensemble::ensemble;
     #[pymodule_export]
     use crate::height_map::PyHeightMap;
+    #[pymodule_export]
+    use crate::interface::{
+        flow_rate, largest_von_mises, leakage, percolation, stress_at_depths, stress_at_points, von_mises,
+    };
     #[pymodule_export]
     use crate::io::{channels, read_surface, si, write_surface};
     #[pymodule_export]

@@ -45,6 +45,16 @@ from ._errors import (
 from ._files import ReadSurface, SceneOutcome, channels, read_surface, run_scene, si, write_surface
 from ._formulas import *  # noqa: F403
 from ._inputs import Body, Scene, Surface
+from ._interface import (
+    LargestVonMises,
+    Leakage,
+    Percolation,
+    largest_von_mises,
+    leakage,
+    percolation,
+    stress_below,
+    von_mises,
+)
 from ._models import (
     Bem3d,
     Equivalent,
@@ -76,12 +86,15 @@ __all__ = [
     "Formula",
     "GreenwoodWilliamson",
     "HeightMap",
+    "LargestVonMises",
+    "Leakage",
     "Mdr1d",
     "Model",
     "Normalisation",
     "NotConverged",
     "OutOfMemory",
     "OutOfRange",
+    "Percolation",
     "Persson",
     "Pressed",
     "ReadError",
@@ -99,7 +112,10 @@ __all__ = [
     "combinations",
     "ensemble",
     "follow",
+    "largest_von_mises",
+    "leakage",
     "models",
+    "percolation",
     "press",
     "quantities",
     "read_surface",
@@ -107,11 +123,13 @@ __all__ = [
     "set_threads",
     "si",
     "statistics",
+    "stress_below",
     "surface_gen",
     "sweep",
     "table",
     "threads",
     "typing",
+    "von_mises",
     "write_surface",
 ]
 __all__ += _formulas.__all__

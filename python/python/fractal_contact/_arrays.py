@@ -9,7 +9,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._core import HeightMap
-from ._errors import DomainError, ShapeError
+from ._errors import DomainError, ShapeError, domain_error
+from ._numbers import number
+from ._plain import pair
 
 # Names of dimensions along x and along y, in small letters.
 NAMES = {"x": ("x", "column", "columns", "col"), "y": ("y", "row", "rows")}
@@ -50,10 +52,16 @@ def by_name(values: Any) -> tuple[Any, str | None]:
 
 def falls(values: Any, name: Any) -> bool:
     """Whether the coordinates along a dimension fall; those that are in no equal steps are an error."""
+    step = step_along(values, name)
+    return step is not None and step < 0.0
+
+
+def step_along(values: Any, name: Any) -> float | None:
+    """The step of the coordinates along a dimension, None without coordinates; unequal steps are an error."""
     coordinates = getattr(values, "coords", {})
     places = np.asarray(coordinates[name]) if name in coordinates else np.empty(0)
     if places.ndim != 1 or places.size < 2 or places.dtype.kind not in "iuf":
-        return False
+        return None
     steps = np.diff(places.astype(np.float64))
     mean = steps.mean()
     # Coordinates in files are often rounded.
@@ -62,7 +70,56 @@ def falls(values: Any, name: Any) -> bool:
             f"the coordinates along {name!r} are not in equal steps: expected a regular grid; "
             "array.drop_vars(...) leaves them out"
         )
-    return bool(mean < 0)
+    return float(mean)
+
+
+def _two_dimensional(array: NDArray[Any], name: str) -> None:
+    """An error for what is no map of real numbers."""
+    if array.dtype.kind not in "fiub":
+        raise TypeError(f"the array {name} is of the type {array.dtype}: expected real numbers")
+    if array.ndim != 2:
+        error = ShapeError(f"the array {name} has {array.ndim} dimensions: expected 2, [row, column]")
+        error.quantity, error.value, error.expected = f"dimensions of {name}", array.ndim, "2"
+        raise error
+    if array.size == 0:
+        error = ShapeError(f"the array {name} has the shape {array.shape}: expected at least one cell")
+        error.quantity, error.value, error.expected = "cells", 0, "at least 1"
+        raise error
+
+
+def field(values: ArrayLike, name: str, *, undefined: float = np.nan) -> NDArray[np.float64]:
+    """Two-dimensional C-ordered doubles, ``[row, column]``, with `undefined` where the array is masked.
+
+    What makes no sense in it is refused by the compiled part, which knows the place.
+    """
+    named, _ = by_name(values)
+    array = np.asarray(np.ma.getdata(named) if np.ma.isMaskedArray(named) else named)
+    _two_dimensional(array, name)
+    found = np.ascontiguousarray(array, dtype=np.float64)
+    mask = np.ma.getmask(named) if np.ma.isMaskedArray(named) else np.ma.nomask
+    return np.where(mask, undefined, found) if np.any(mask) else found
+
+
+def sides(cell: Any, values: Any) -> tuple[float, float] | None:
+    """Sides (dx, dy) of a cell: as given, of a map, or the steps of named coordinates; None where none says so."""
+    if cell is not None:
+        given = pair(cell)
+        both = given if isinstance(given, tuple) else (given, given)
+        if len(both) != 2:
+            raise ValueError(f"cell is {cell!r}: expected the side of a square or two sides, (dx, dy)")
+        names = ("cell[0]", "cell[1]") if isinstance(given, tuple) else ("cell", "cell")
+        for side, name in zip(both, names, strict=True):
+            if not 0.0 < number(side, name) < np.inf:
+                raise domain_error(name, float(side), "a finite number > 0")
+        return number(both[0], names[0]), number(both[1], names[1])
+    if isinstance(values, HeightMap):
+        return values.cell
+    axes = {axis: name for name in getattr(values, "dims", ()) for axis in NAMES if str(name).lower() in NAMES[axis]}
+    steps = [step_along(values, axes[axis]) for axis in NAMES if axis in axes]
+    known = [abs(step) for step in steps if step is not None]
+    if len(known) == 1:
+        raise TypeError("cell is missing: the array has coordinates along one of its dimensions alone")
+    return (known[0], known[1]) if known else None
 
 
 def heights(values: ArrayLike, undefined: str) -> tuple[NDArray[np.float64], bool, str | None]:
@@ -73,16 +130,7 @@ def heights(values: ArrayLike, undefined: str) -> tuple[NDArray[np.float64], boo
     masked = np.ma.isMaskedArray(named)
     mask = np.ma.getmaskarray(np.ma.asarray(named)) if masked else None
     array = np.asarray(np.ma.getdata(named) if masked else named)
-    if array.dtype.kind not in "fiub":
-        raise TypeError(f"heights are of the type {array.dtype}: expected real numbers")
-    if array.ndim != 2:
-        error = ShapeError(f"heights have {array.ndim} dimensions: expected 2, [row, column]")
-        error.quantity, error.value, error.expected = "dimensions of heights", array.ndim, "2"
-        raise error
-    if array.size == 0:
-        error = ShapeError(f"heights have the shape {array.shape}: expected at least one cell")
-        error.quantity, error.value, error.expected = "cells", 0, "at least 1"
-        raise error
+    _two_dimensional(array, "heights")
     found = np.ascontiguousarray(array, dtype=np.float64)
     if mask is not None and mask.any():
         found = np.where(mask, np.nan, found)

@@ -33,12 +33,16 @@ __all__ = [
     "ensemble",
     "fields",
     "fit_spectrum",
+    "flow_rate",
     "height_difference",
     "height_map",
+    "largest_von_mises",
+    "leakage",
     "model",
     "models",
     "notes_of_python",
     "parameters",
+    "percolation",
     "picture",
     "power_spectrum",
     "press_scene",
@@ -50,10 +54,13 @@ __all__ = [
     "self_affine_map",
     "set_threads",
     "si",
+    "stress_at_depths",
+    "stress_at_points",
     "surface",
     "surface_seed",
     "threads",
     "twin",
+    "von_mises",
     "write_surface",
 ]
 
@@ -1215,6 +1222,36 @@ def scale_dependence(
 
 def fit_spectrum(map: HeightMap, periodic: bool, instrument: float | None) -> dict[str, Any]:
     """The fit of a self-affine spectrum: each quantity as (value, low, high), None where there is only a bound."""
+
+def leakage(
+    gap: NDArray[np.float64],
+    cell: tuple[float, float],
+    along_y: bool,
+    repeats: tuple[bool, bool],
+    tolerance: float,
+    continuum: bool,
+) -> dict[str, Any]:
+    """..."""
+
+def flow_rate(lower: float, upper: float, pressure_drop: float, viscosity: float) -> tuple[float, float]:
+    """..."""
+
+def percolation(
+    gap: NDArray[np.float64], cell: tuple[float, float], along_y: bool, repeats: tuple[bool, bool], g_min: float
+) -> dict[str, Any]:
+    """..."""
+
+def stress_at_depths(load: Mapping[str, Any], depths: list[float]) -> NDArray[np.float64]:
+    """..."""
+
+def stress_at_points(load: Mapping[str, Any], points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """..."""
+
+def largest_von_mises(load: Mapping[str, Any], depths: list[float]) -> dict[str, Any]:
+    """..."""
+
+def von_mises(stress: NDArray[np.float64]) -> tuple[NDArray[np.float64], int | None]:
+    """..."""
 
 def read_surface(
     path: Path, options: Mapping[str, Any], content: bytes | None = None
