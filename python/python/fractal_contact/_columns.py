@@ -213,6 +213,106 @@ class Columns:
         return self._column("conductance")
 
     @property
+    def leakage(self) -> NDArray[np.float64]:
+        """numpy.ndarray: leakage in m^3/s for SI units, shape (states,); NaN where there is none."""
+        return self._column("leakage")
+
+    @property
+    def leakage_lower(self) -> NDArray[np.float64]:
+        """numpy.ndarray: lower bound of the leakage in m^3/s for SI units, shape (states,); NaN where there is none."""
+        return self._column("leakage_lower")
+
+    @property
+    def leakage_upper(self) -> NDArray[np.float64]:
+        """numpy.ndarray: upper bound of the leakage in m^3/s for SI units, shape (states,); NaN where there is none."""
+        return self._column("leakage_upper")
+
+    @property
+    def flow_factor(self) -> NDArray[np.float64]:
+        """numpy.ndarray: flow factor, a pure number, shape (states,); NaN where there is none."""
+        return self._column("flow_factor")
+
+    @property
+    def open_along_x(self) -> NDArray[np.float64]:
+        """numpy.ndarray: open path along x, a pure number, shape (states,); NaN where there is none."""
+        return self._column("open_along_x")
+
+    @property
+    def open_along_y(self) -> NDArray[np.float64]:
+        """numpy.ndarray: open path along y, a pure number, shape (states,); NaN where there is none."""
+        return self._column("open_along_y")
+
+    @property
+    def contact_along_x(self) -> NDArray[np.float64]:
+        """numpy.ndarray: path of contact along x, a pure number, shape (states,); NaN where there is none."""
+        return self._column("contact_along_x")
+
+    @property
+    def contact_along_y(self) -> NDArray[np.float64]:
+        """numpy.ndarray: path of contact along y, a pure number, shape (states,); NaN where there is none."""
+        return self._column("contact_along_y")
+
+    @property
+    def constriction_x(self) -> NDArray[np.float64]:
+        """numpy.ndarray: critical constriction along x in m for SI units, shape (states,); NaN where there is none."""
+        return self._column("constriction_x")
+
+    @property
+    def constriction_x_at_x(self) -> NDArray[np.float64]:
+        """numpy.ndarray: place x of the constriction along x in m for SI units, shape (states,); NaN where there is
+        none."""
+        return self._column("constriction_x_at_x")
+
+    @property
+    def constriction_x_at_y(self) -> NDArray[np.float64]:
+        """numpy.ndarray: place y of the constriction along x in m for SI units, shape (states,); NaN where there is
+        none."""
+        return self._column("constriction_x_at_y")
+
+    @property
+    def constriction_y(self) -> NDArray[np.float64]:
+        """numpy.ndarray: critical constriction along y in m for SI units, shape (states,); NaN where there is none."""
+        return self._column("constriction_y")
+
+    @property
+    def constriction_y_at_x(self) -> NDArray[np.float64]:
+        """numpy.ndarray: place x of the constriction along y in m for SI units, shape (states,); NaN where there is
+        none."""
+        return self._column("constriction_y_at_x")
+
+    @property
+    def constriction_y_at_y(self) -> NDArray[np.float64]:
+        """numpy.ndarray: place y of the constriction along y in m for SI units, shape (states,); NaN where there is
+        none."""
+        return self._column("constriction_y_at_y")
+
+    @property
+    def largest_von_mises(self) -> NDArray[np.float64]:
+        """numpy.ndarray: largest stress below the surface in Pa for SI units, shape (states,); NaN where there is
+        none."""
+        return self._column("largest_von_mises")
+
+    @property
+    def largest_von_mises_depth(self) -> NDArray[np.float64]:
+        """numpy.ndarray: depth of the largest stress in m for SI units, shape (states,); NaN where there is none."""
+        return self._column("largest_von_mises_depth")
+
+    @property
+    def largest_von_mises_x(self) -> NDArray[np.float64]:
+        """numpy.ndarray: place x of the largest stress in m for SI units, shape (states,); NaN where there is none."""
+        return self._column("largest_von_mises_x")
+
+    @property
+    def largest_von_mises_y(self) -> NDArray[np.float64]:
+        """numpy.ndarray: place y of the largest stress in m for SI units, shape (states,); NaN where there is none."""
+        return self._column("largest_von_mises_y")
+
+    @property
+    def factor_until_yield(self) -> NDArray[np.float64]:
+        """numpy.ndarray: factor until yield, a pure number, shape (states,); NaN where there is none."""
+        return self._column("factor_until_yield")
+
+    @property
     def patches(self) -> NDArray[np.float64]:
         """numpy.ndarray: number of contacts, a pure number, shape (states,); NaN where there is none."""
         return self._column("patches")

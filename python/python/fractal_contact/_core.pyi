@@ -533,6 +533,87 @@ class ContactState:
         W/K].
         """
     @property
+    def leakage(self) -> float | None:
+        """float or None: leakage, flow of the fluid through the network of the cells under the pressure drop; a cell
+        conducts as its gap cubed [m^3/s].
+        """
+    @property
+    def leakage_lower(self) -> float | None:
+        """float or None: lower bound of the leakage, proven lower bound of the flow through the continuum with a
+        constant gap in each cell [m^3/s].
+        """
+    @property
+    def leakage_upper(self) -> float | None:
+        """float or None: upper bound of the leakage, proven upper bound of the flow through the continuum with a
+        constant gap in each cell [m^3/s].
+        """
+    @property
+    def flow_factor(self) -> float | None:
+        """float or None: flow factor, leakage over the flow between smooth surfaces at the mean gap, where cells in
+        contact count as 0.
+        """
+    @property
+    def open_along_x(self) -> float | None:
+        """float or None: open path along x, 1 where cells with a gap, joined by edges, lead between the opposite
+        edges along x, otherwise 0.
+        """
+    @property
+    def open_along_y(self) -> float | None:
+        """float or None: open path along y, 1 where cells with a gap, joined by edges, lead between the opposite
+        edges along y, otherwise 0.
+        """
+    @property
+    def contact_along_x(self) -> float | None:
+        """float or None: path of contact along x, 1 where cells in contact, joined by edges, lead between the
+        opposite edges along x, otherwise 0.
+        """
+    @property
+    def contact_along_y(self) -> float | None:
+        """float or None: path of contact along y, 1 where cells in contact, joined by edges, lead between the
+        opposite edges along y, otherwise 0.
+        """
+    @property
+    def constriction_x(self) -> float | None:
+        """float or None: gap of the critical constriction along x, the narrowest cell of the widest path; 0 where
+        the contact closes every path [m].
+        """
+    @property
+    def constriction_x_at_x(self) -> float | None:
+        """float or None: place x of the constriction along x, centre of this cell, along x [m]."""
+    @property
+    def constriction_x_at_y(self) -> float | None:
+        """float or None: place y of the constriction along x, centre of this cell, along y [m]."""
+    @property
+    def constriction_y(self) -> float | None:
+        """float or None: gap of the critical constriction along y, the narrowest cell of the widest path; 0 where
+        the contact closes every path [m].
+        """
+    @property
+    def constriction_y_at_x(self) -> float | None:
+        """float or None: place x of the constriction along y, centre of this cell, along x [m]."""
+    @property
+    def constriction_y_at_y(self) -> float | None:
+        """float or None: place y of the constriction along y, centre of this cell, along y [m]."""
+    @property
+    def largest_von_mises(self) -> float | None:
+        """float or None: largest stress below the surface, largest equivalent stress of von Mises at the centres of
+        cells, in the requested range of depths [Pa].
+        """
+    @property
+    def largest_von_mises_depth(self) -> float | None:
+        """float or None: depth of the largest stress, depth of this stress below the surface [m]."""
+    @property
+    def largest_von_mises_x(self) -> float | None:
+        """float or None: place x of the largest stress, centre of the cell of this stress, along x [m]."""
+    @property
+    def largest_von_mises_y(self) -> float | None:
+        """float or None: place y of the largest stress, centre of the cell of this stress, along y [m]."""
+    @property
+    def factor_until_yield(self) -> float | None:
+        """float or None: factor until yield, yield stress over this stress: the factor on all pressures and
+        tractions at which the body yields first.
+        """
+    @property
     def largest_patch(self) -> float | None:
         """float or None: area of the largest contact, area of the largest patch [m^2]."""
     @property
@@ -620,6 +701,11 @@ class ContactState:
     def tangential_displacement_time_error(self) -> float | None:
         """float or None: estimated relative error of the tangential displacement by steps of time: its difference
         from that of the same history in steps twice as long.
+        """
+    @property
+    def leakage_error(self) -> float | None:
+        """float or None: error of the leakage, half of the distance between the proven bounds of the network's flow,
+        over the flow.
         """
     @property
     def equilibrium(self) -> float | None:
@@ -1231,27 +1317,30 @@ def leakage(
     tolerance: float,
     continuum: bool,
 ) -> dict[str, Any]:
-    """..."""
+    """Flow between opposite edges."""
 
 def flow_rate(lower: float, upper: float, pressure_drop: float, viscosity: float) -> tuple[float, float]:
-    """..."""
+    """The bounds of the flow of a fluid under a pressure drop, of those of the conductance."""
 
 def percolation(
     gap: NDArray[np.float64], cell: tuple[float, float], along_y: bool, repeats: tuple[bool, bool], g_min: float
 ) -> dict[str, Any]:
-    """..."""
+    """What leads from edge to edge."""
 
 def stress_at_depths(load: Mapping[str, Any], depths: list[float]) -> NDArray[np.float64]:
-    """..."""
+    """The stress at the centres of all cells, `[component, depth, row, column]`."""
 
 def stress_at_points(load: Mapping[str, Any], points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """..."""
+    """The stress at points, `[component, point]`."""
 
 def largest_von_mises(load: Mapping[str, Any], depths: list[float]) -> dict[str, Any]:
-    """..."""
+    """The largest equivalent stress of von Mises, its depth, its column and row, its place, and the stress there."""
 
 def von_mises(stress: NDArray[np.float64]) -> tuple[NDArray[np.float64], int | None]:
-    """..."""
+    """The equivalent stress of von Mises of stresses `[component, stress]`, and the number of the first one that no
+    finite
+    number gives.
+    """
 
 def read_surface(
     path: Path, options: Mapping[str, Any], content: bytes | None = None
