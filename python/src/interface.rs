@@ -3,14 +3,17 @@
 use crate::errors::of_model;
 use crate::memory;
 use crate::numbers::RealNumber;
-use crate::pool::{self, StopToken};
+use crate::pool;
 use crate::state;
 use fractal_contact::interface::stress::{self, StressedBody, SubsurfaceStress, SurfaceLoad};
 use fractal_contact::interface::{self, FlowAxis, FlowBounds, FlowOptions, Leakage, SheetFlow};
+use fractal_contact::runs::check_memory;
 use fractal_contact::{Boundary, Cells, Error, Field, Result, Stop};
 use numpy::{PyArray1, PyArray2, PyArray4, PyArrayMethods, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Bytes for each cell of paths: the order of the cells, and disjoint sets.
 const PATHS: f64 = 20.0;
@@ -49,13 +52,25 @@ fn boundary(repeats: [bool; 2]) -> Boundary {
     }
 }
 
-/// Runs what can be stopped. Where the handler of a signal raised meanwhile, the caller has that exception.
-fn run<R: Send>(py: Python<'_>, work: impl FnOnce(Stop<'_>) -> Result<R> + Send) -> PyResult<R> {
-    let (result, raised) = pool::run(py, StopToken::NONE, &mut |_| Ok(()), |stop| work(&|| stop()))?;
-    match raised {
-        Some(raised) => Err(raised),
-        None => result.map_err(|error| of_model(py, error)),
+/// Says stop to work whose caller is gone.
+struct StopOnDrop(Arc<AtomicBool>);
+
+impl Drop for StopOnDrop {
+    fn drop(&mut self) {
+        self.0.store(true, Ordering::Relaxed);
     }
+}
+
+/// Runs what can be stopped. Where the handler of a signal raises, the caller has that exception at once, and the work
+/// ends where it looks next: transforms of large maps take seconds in between.
+fn run<R: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(Stop<'_>) -> Result<R> + Send + 'static,
+) -> PyResult<R> {
+    let stopped = Arc::new(AtomicBool::new(false));
+    let _caller = StopOnDrop(Arc::clone(&stopped));
+    let result = pool::call(py, move || work(&|| stopped.load(Ordering::Relaxed)))?;
+    result.map_err(|error| of_model(py, error))
 }
 
 /// Flow between opposite edges.
@@ -78,7 +93,7 @@ pub fn leakage<'py>(
     )?;
     let gap = field(py, &gap, cell)?;
     let found =
-        run(py, |stop| interface::leakage_until(&gap, axis(along_y), boundary(repeats), options, stop))?;
+        run(py, move |stop| interface::leakage_until(&gap, axis(along_y), boundary(repeats), options, stop))?;
     let dict = PyDict::new(py);
     dict.set_item("lower", found.network.lower)?;
     dict.set_item("upper", found.network.upper)?;
@@ -166,7 +181,7 @@ impl GivenLoad<'_> {
         let (cells, tractions) = (cells(&self.pressure), self.traction.is_some());
         let kinds = STRESS_MAPS[usize::from(self.repeats == [true, true])];
         let maps = kinds[usize::from(tractions)] + if tractions { 3.0 } else { 1.0 };
-        check(py, cells, maps * cells.map_bytes() + more)
+        check(cells, maps * cells.map_bytes() + more).map_err(|error| of_model(py, error))
     }
 
     fn load(&self, py: Python<'_>) -> PyResult<(SurfaceLoad, StressedBody)> {
@@ -182,8 +197,9 @@ impl GivenLoad<'_> {
     }
 }
 
-fn check(py: Python<'_>, cells: Cells, bytes: f64) -> PyResult<()> {
-    memory::check_grid(py, "the stress below a map", cells, bytes)
+fn check(cells: Cells, bytes: f64) -> Result<()> {
+    let Cells { columns, rows } = cells;
+    check_memory(format!("the stress below a map of {columns} columns x {rows} rows"), bytes)
 }
 
 /// Checks all depths before the first one is begun.
@@ -204,11 +220,11 @@ pub fn stress_at_depths<'py>(
     let bytes = 6.0 * depths.len() as f64 * cells.map_bytes();
     load.check_memory(py, bytes)?;
     let (load, body) = load.load(py)?;
-    let plan = run(py, |_| SubsurfaceStress::new(&load, body))?;
-    // That of a map which repeats itself along one axis depends on its shape.
-    check(py, cells, plan.memory() + bytes)?;
     let (count, planes) = (cells.columns * cells.rows, depths.len());
-    let values = run(py, |stop| {
+    let values = run(py, move |stop| {
+        let plan = SubsurfaceStress::new(&load, body)?;
+        // That of a map which repeats itself along one axis depends on its shape.
+        check(cells, plan.memory() + bytes)?;
         let mut values = vec![0.0; 6 * planes * count];
         for (i, depth) in depths.iter().enumerate() {
             let plane = plan.at_depth(*depth, stop).map_err(|error| of_depth(error, i))?;
@@ -243,9 +259,9 @@ pub fn stress_at_points<'py>(
     // The load and its loaded cells; one sum for each thousand of these.
     let sums = cells.map_bytes() / 8.0 / 1024.0 + 4.0;
     let loads = cells.map_bytes() * if load.traction.is_some() { 8.0 } else { 6.0 };
-    check(py, cells, loads + 48.0 * points.len() as f64 * sums)?;
+    check(cells, loads + 48.0 * points.len() as f64 * sums).map_err(|error| of_model(py, error))?;
     let (load, body) = load.load(py)?;
-    let found = run(py, |stop| stress::stress_at_points(&load, body, &points, stop))?;
+    let found = run(py, move |stop| stress::stress_at_points(&load, body, &points, stop))?;
     let values = (0..6).flat_map(|component| found.iter().map(move |stress| stress[component])).collect();
     PyArray1::from_vec(py, values).reshape([6, found.len()])
 }
@@ -259,7 +275,7 @@ pub fn largest_von_mises<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     load.check_memory(py, 6.0 * cells(&load.pressure).map_bytes())?;
     let (load, body) = load.load(py)?;
-    let found = run(py, |stop| stress::largest_von_mises(&load, body, &depths, stop))?;
+    let found = run(py, move |stop| stress::largest_von_mises(&load, body, &depths, stop))?;
     let dict = PyDict::new(py);
     dict.set_item("value", found.value)?;
     dict.set_item("depth", found.depth)?;

@@ -428,23 +428,39 @@ def test_maps_have_cells():
 
 
 def test_of_a_state():
-    """The recipe of the book: as the outputs of a scene, to the last bit."""
+    """The recipe of the book has the numbers that a scene reads off the interface, to the last bit."""
     rough = fc.Surface.self_affine(hurst=0.8, size=1.0, rms_height=0.01).height_map(64, seed=3)
-    effects, outputs = {"boundary": "periodic"}, ["gap", "pressure"]
-    state = fc.Bem3d().prepare(fc.Scene(rough, 1.0, effects=effects, outputs=outputs)).solve(mean_pressure=0.02)
-    touching = state.pressure > 0
-    left = np.abs(state.gap[touching]).max()
-    gap = np.where(touching | (state.gap <= left), 0.0, state.gap)
-    path = fc.percolation(gap, rough.cell, boundary="periodic")
-    leak = fc.leakage(gap, rough.cell, boundary="periodic")
-    assert path.spans == (leak.lower > 0.0) and 0.0 < leak.flow_factor < 1.0
-    assert leak.mean_gap == pytest.approx(gap.mean(), rel=1e-14) and (leak.flux[:, touching] == 0.0).all()
-    depths = rough.cell[0] * np.geomspace(0.5, 16.0, 6)
-    largest = fc.largest_von_mises(state.pressure, cell=rough.cell, depths=depths, poisson=0.3, boundary="periodic")
-    assert 0.0 < largest.value < state.pressure.max() and depths[0] <= largest.depth <= depths[-1]
-    stress = fc.stress_below(state.pressure, cell=rough.cell, depths=[largest.depth], poisson=0.3, boundary="periodic")
-    assert fc.von_mises(stress).max() == pytest.approx(largest.value, rel=1e-13)
-    assert fc.von_mises(stress)[0, largest.row, largest.column] == pytest.approx(largest.value, rel=1e-13)
+    depths = (rough.cell[0] * np.geomspace(0.5, 16.0, 6)).tolist()
+    pressed = fc.press(
+        rough,
+        bodies=(None, fc.Body(0.91, 0.3)),
+        mean_pressure=0.004,
+        effects={"boundary": "periodic"},
+        outputs=["gap", "pressure"],
+        detrend="none",
+        keys={
+            "outputs.leakage": {"viscosity": 2.0, "pressure_drop": 24.0, "along": "y"},
+            "outputs.percolation": True,
+            "outputs.stress_below": {"depths": depths},
+        },
+    )
+    gap, pressure = pressed.gap[0], pressed.pressure[0]
+    touching = pressure > 0
+    gap = np.where(touching | (gap <= np.abs(gap[touching]).max()), 0.0, gap)
+    leak = fc.leakage(gap, rough.cell, along="y", boundary="periodic")
+    lower, upper = leak.flow(24.0, 2.0)
+    assert lower <= pressed.leakage[0] <= upper and pressed.leakage[0] == lower + 0.5 * (upper - lower)
+    assert leak.flow(24.0, 2.0, continuum=True) == (pressed.leakage_lower[0], pressed.leakage_upper[0])
+    assert leak.flow_factor == pressed.flow_factor[0] and (leak.flux[:, touching] == 0.0).all()
+    path = fc.percolation(gap, rough.cell, along="y", boundary="periodic")
+    assert path.spans and path.constriction == pressed.constriction_y[0]
+    assert path.at == (pressed.constriction_y_at_x[0], pressed.constriction_y_at_y[0])
+    given = {"cell": rough.cell, "poisson": 0.3, "boundary": "periodic"}
+    largest = fc.largest_von_mises(pressure, depths=depths, **given)
+    assert (largest.value, largest.depth) == (pressed.largest_von_mises[0], pressed.largest_von_mises_depth[0])
+    assert largest.at == (pressed.largest_von_mises_x[0], pressed.largest_von_mises_y[0])
+    stress = fc.stress_below(pressure, depths=[largest.depth], **given)
+    assert fc.von_mises(stress).max() == fc.von_mises(stress)[0, largest.row, largest.column] == largest.value
 
 
 # What makes no sense.
