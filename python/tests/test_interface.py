@@ -121,6 +121,15 @@ def test_duality_on_checkerboards_and_others():
     assert leak.continuum_lower < math.sqrt(8.0) < leak.continuum_upper < 1.2 * leak.continuum_lower
 
 
+def test_pressures_are_between_those_of_the_edges():
+    for seed in range(20):
+        # Conductances over fifty decades.
+        gap = np.random.default_rng(seed).lognormal(sigma=10.0, size=(12, 10))
+        leak = fc.leakage(gap, tolerance=1e-3)
+        assert leak.pressure.min() >= 0.0 and leak.pressure.max() <= 1.0 and np.isfinite(leak.flux).all()
+        assert leak.lower <= leak.upper and leak.continuum_lower <= leak.continuum_upper
+
+
 def test_closed_interfaces_and_cells_that_are_not_reached():
     gap = np.ones((5, 5))
     gap[:, 2] = 0.0

@@ -45,9 +45,17 @@ rough.height = 1  # type: ignore[attr-defined]
 random = fc.Surface.self_affine(size=1.0, rms_height=0.1, hurst=0.5).height_map(8, np.random.default_rng(1))
 list(contact.sweep(force=(1.0, 2.0), steps=10))
 fc.Scene(ball, 1.0, effects={"friction": {"coefficient": 0.1, "coupling": "full"}}, conductance=("thermal", 1.0, 1.0))
+lower, upper = fc.leakage(np.ones((4, 4)), cell=(1.0, 2.0), along="y", boundary="periodic").flow(1e5, 1e-3)
+traction = (np.ones((4, 4)), [[0.0] * 4] * 4)
+stress = fc.stress_below(rough, depths=(depth for depth in (0.1, 0.2)), poisson=0.3, traction=traction)
+fc.stress_below([[1.0]], cell=1, points=[(0.0, 0.0, 1.0)], origin=[1.0, 2.0], poisson=0.3)
+highest = fc.von_mises(stress).max() + fc.largest_von_mises(rough, depths=[0.1], poisson=0.3).value + lower
 """
 
 BAD = [
+    'fc.leakage([[1.0]], along="z")',
+    'fc.percolation([[1.0]], boundary={"x": "periodic"})',
+    "fc.stress_below([[1.0]], depths=[1.0])",
     "fc.Effects(hardnes=1)",
     'fc.Effects(hardness={"pressur": 1.0})',
     'fc.Effects(hardness="2 GPa")',

@@ -42,7 +42,8 @@ class Leakage:
         and Cheng (1978); its relative error is that of the bounds. None for an interface without any gap.
     pressure : numpy.ndarray
         Pressure of the fluid at the centre of each cell, from 1 at the first edge to 0 at the last, shape (rows,
-        columns). In cells that no edge is connected to it is 0 and means nothing.
+        columns). In cells that no edge is connected to it is 0 and means nothing. Where next to nothing flows beside
+        what flows elsewhere, it is only known to be between 0 and 1.
     reached : numpy.ndarray
         Whether open cells connect a cell to an edge, bool, shape (rows, columns).
     flux : numpy.ndarray
