@@ -24,15 +24,15 @@ const STRESS_MAPS: [[f64; 2]; 2] = [[30.0, 60.0], [14.0, 26.0]];
 const CHUNK: usize = 1 << 16;
 
 /// Two-dimensional C-ordered doubles, as `fractal_contact._arrays` prepares them.
-type Map<'py> = PyReadonlyArray2<'py, f64>;
+type MapArray<'py> = PyReadonlyArray2<'py, f64>;
 
-fn cells(map: &Map<'_>) -> Cells {
+fn cells(map: &MapArray<'_>) -> Cells {
     let [rows, columns] = map.shape() else { unreachable!("two dimensions") };
     Cells { columns: *columns, rows: *rows }
 }
 
 /// A copy of a map, whose cells have these sides.
-fn field(py: Python<'_>, map: &Map<'_>, (dx, dy): (f64, f64)) -> PyResult<Field> {
+fn field(py: Python<'_>, map: &MapArray<'_>, (dx, dy): (f64, f64)) -> PyResult<Field> {
     let cells = cells(map);
     let size = [dx * cells.columns as f64, dy * cells.rows as f64];
     Field::new(cells, size, map.to_vec()?).map_err(|error| of_model(py, error))
@@ -77,7 +77,7 @@ fn run<R: Send + 'static>(
 #[pyfunction]
 pub fn leakage<'py>(
     py: Python<'py>,
-    gap: Map<'py>,
+    gap: MapArray<'py>,
     cell: (f64, f64),
     along_y: bool,
     repeats: [bool; 2],
@@ -143,7 +143,7 @@ pub fn flow_rate(
 #[pyfunction]
 pub fn percolation<'py>(
     py: Python<'py>,
-    gap: Map<'py>,
+    gap: MapArray<'py>,
     cell: (f64, f64),
     along_y: bool,
     repeats: [bool; 2],
@@ -172,8 +172,8 @@ pub fn percolation<'py>(
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub struct GivenLoad<'py> {
-    pressure: Map<'py>,
-    traction: Option<(Map<'py>, Map<'py>)>,
+    pressure: MapArray<'py>,
+    traction: Option<(MapArray<'py>, MapArray<'py>)>,
     cell: (f64, f64),
     poisson: RealNumber,
     repeats: [bool; 2],
@@ -256,7 +256,7 @@ fn of_depth(error: Error, i: usize) -> Error {
 pub fn stress_at_points<'py>(
     py: Python<'py>,
     load: GivenLoad<'py>,
-    points: Map<'py>,
+    points: MapArray<'py>,
 ) -> PyResult<Bound<'py, PyArray2<f64>>> {
     let points = points.as_slice()?.as_chunks().0.to_vec();
     let cells = cells(&load.pressure);
@@ -295,7 +295,7 @@ pub fn largest_von_mises<'py>(
 #[pyfunction]
 pub fn von_mises<'py>(
     py: Python<'py>,
-    stress: Map<'py>,
+    stress: MapArray<'py>,
 ) -> PyResult<(Bound<'py, PyArray1<f64>>, Option<usize>)> {
     let count = cells(&stress).columns;
     memory::check(py, format!("the equivalent stress of {count} stresses"), 8.0 * count as f64)?;
