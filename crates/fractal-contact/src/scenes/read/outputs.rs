@@ -102,6 +102,7 @@ pub(crate) fn all_fields() -> impl Iterator<Item = &'static FieldQuantity> {
 
 /// The requested outputs: results of the models, and files.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[allow(clippy::struct_excessive_bools)] // Keys, each either given or not.
 pub struct RequestedOutputs {
     /// Results of the models.
     pub outputs: Outputs,

@@ -108,10 +108,8 @@ pub(crate) fn table(states: &StateTable<'_>) -> Result<Table> {
         let units: Vec<&SolvedUnit<'_>> = states.units.iter().filter(|unit| unit.model == model).collect();
         let mut rows: Vec<(f64, Vec<Value>)> = Vec::new();
         for state in 0..scene.request.count() {
-            let of_unit = |unit: &&SolvedUnit<'_>| unit.states.iter().find(|record| record.index == state);
-            let Some(records) = units.iter().map(|unit| of_unit(unit)).collect::<Option<Vec<_>>>() else {
-                continue;
-            };
+            let of_units = units.iter().map(|unit| unit.states.iter().find(|record| record.index == state));
+            let Some(records) = of_units.collect::<Option<Vec<_>>>() else { continue };
             let Some((pressure, _)) =
                 StateQuantity::named("force").and_then(|force| mean_with_error(&records, force, 1.0 / area))
             else {
