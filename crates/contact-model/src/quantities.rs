@@ -633,7 +633,7 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
         "proven upper bound of the flow through the continuum with a constant gap in each cell"
         { drawn: false }
         => |s, _| leaked(s, |l| Some(l.continuum[1]));
-    "flow_factor" "flow factor" "\\phi" One; LEAKAGE;
+    "flow_factor" "flow factor" "" One; LEAKAGE;
         "leakage over the flow between smooth surfaces at the mean gap, where cells in contact count as 0"
         { source: "Patir and Cheng, J. Lubr. Technol. 100, 12 (1978)" }
         => |s, _| leaked(s, |l| l.flow_factor);
@@ -675,7 +675,7 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
         "centre of this cell, along y; empty where the contact closes every path"
         { average: Average::No, drawn: false }
         => |s, _| path(s, 1, |p| p.centre.map(|centre| centre[1]));
-    "largest_von_mises" "largest stress below the surface" "\\sigma_v" Si("Pa"); STRESS_BELOW;
+    "largest_von_mises" "largest stress below the surface" "" Si("Pa"); STRESS_BELOW;
         "largest equivalent stress of von Mises at the centres of cells, in the requested range of depths"
         => |s, _| stressed(s, |l| Some(l.von_mises));
     "largest_von_mises_depth" "depth of the largest stress" "z" Si("m"); STRESS_BELOW;

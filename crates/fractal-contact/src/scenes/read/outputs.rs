@@ -83,7 +83,7 @@ pub(crate) static FLUX: FieldQuantity = FieldQuantity {
 pub(crate) static VON_MISES: FieldQuantity = FieldQuantity {
     name: "von_mises",
     words: "von Mises stress below the surface",
-    symbol: "\\sigma_v",
+    symbol: "",
     unit: "Pa",
     meaning: "equivalent stress of von Mises below each cell, at the depth where the largest one is",
     components: 1,

@@ -99,8 +99,13 @@ pub(crate) fn table(states: &StateTable<'_>) -> Result<Table> {
         let unit = scene.system.unit(unit);
         let [name, error] = member.columns;
         all.push(Column { name, unit, meaning: member.meaning });
-        let meaning = "its error: that of the grid and of the solver, as far as they are known, and half of the 95 % \
-                       interval of the mean over several surfaces";
+        let meaning = if member.of == "flow_factor" {
+            "its error by the solver, and half of the 95 % interval of the mean over several surfaces; that of the \
+             grid is not estimated"
+        } else {
+            "its error: that of the grid and of the solver, as far as they are known, and half of the 95 % interval \
+             of the mean over several surfaces"
+        };
         all.push(Column { name: error, unit, meaning });
     }
     let mut table = Table::new(format!("{}: law of the interface", states.title), all);
