@@ -12,44 +12,44 @@ use contact_model::{Column, Table, Value};
 pub(crate) const FILE: &str = "law.csv";
 
 /// One number of the law.
-struct Member {
+struct LawColumn {
     /// The quantity of the states.
     of: &'static str,
     /// Its column, and that of its error.
-    columns: [&'static str; 2],
+    names: [&'static str; 2],
     /// Its unit; empty for that of the quantity per nominal area.
     unit: &'static str,
     meaning: &'static str,
 }
 
-const MEMBERS: [Member; 5] = [
-    Member {
+const COLUMNS: [LawColumn; 5] = [
+    LawColumn {
         of: "mean_gap",
-        columns: ["mean_gap", "mean_gap_error"],
+        names: ["mean_gap", "mean_gap_error"],
         unit: "m",
         meaning: "distance of the mean planes of both surfaces",
     },
-    Member {
+    LawColumn {
         of: "contact_fraction",
-        columns: ["contact_fraction", "contact_fraction_error"],
+        names: ["contact_fraction", "contact_fraction_error"],
         unit: "1",
         meaning: "real contact area over the nominal one",
     },
-    Member {
+    LawColumn {
         of: "stiffness",
-        columns: ["stiffness_per_area", "stiffness_per_area_error"],
+        names: ["stiffness_per_area", "stiffness_per_area_error"],
         unit: "Pa/m",
         meaning: "growth of the mean pressure for each unit by which the mean gap falls",
     },
-    Member {
+    LawColumn {
         of: "conductance",
-        columns: ["conductance_per_area", "conductance_per_area_error"],
+        names: ["conductance_per_area", "conductance_per_area_error"],
         unit: "",
         meaning: "conductance through the contact, per nominal area",
     },
-    Member {
+    LawColumn {
         of: "flow_factor",
-        columns: ["flow_factor", "flow_factor_error"],
+        names: ["flow_factor", "flow_factor_error"],
         unit: "1",
         meaning: "flow along the interface over that between smooth surfaces at the mean gap",
     },
@@ -83,23 +83,23 @@ fn mean_with_error(records: &[&StateRecord], of: &StateQuantity, scale: f64) -> 
 pub(crate) fn table(states: &StateTable<'_>) -> Result<Table> {
     let scene = states.scene;
     let area = scene.surface.size().area();
-    let members: Vec<(&Member, &StateQuantity)> = MEMBERS
+    let asked_columns: Vec<(&LawColumn, &StateQuantity)> = COLUMNS
         .iter()
-        .filter_map(|member| Some((member, columns::asked(scene).find(|asked| asked.name == member.of)?)))
+        .filter_map(|column| Some((column, columns::asked(scene).find(|asked| asked.name == column.of)?)))
         .collect();
     let mut all = vec![columns::plain(columns::MODEL)];
     let pascal = scene.system.unit("Pa");
     all.push(Column { name: "mean_pressure", unit: pascal, meaning: "normal force over the nominal area" });
-    for (member, quantity) in &members {
-        let unit = match (member.unit, quantity.unit.si(&scene.requested.outputs)) {
+    for (column, quantity) in &asked_columns {
+        let unit = match (column.unit, quantity.unit.si(&scene.requested.outputs)) {
             ("", "S") => "S/m^2",
             ("", _) => "W/(m^2 K)",
             (unit, _) => unit,
         };
         let unit = scene.system.unit(unit);
-        let [name, error] = member.columns;
-        all.push(Column { name, unit, meaning: member.meaning });
-        let meaning = if member.of == "flow_factor" {
+        let [name, error] = column.names;
+        all.push(Column { name, unit, meaning: column.meaning });
+        let meaning = if column.of == "flow_factor" {
             "its error by the solver, and half of the 95 % interval of the mean over several surfaces; that of the \
              grid is not estimated"
         } else {
@@ -121,8 +121,8 @@ pub(crate) fn table(states: &StateTable<'_>) -> Result<Table> {
                 continue;
             };
             let mut row: Vec<Value> = vec![model.into(), pressure.into()];
-            for (member, quantity) in &members {
-                let per_area = ["stiffness", "conductance"].contains(&member.of);
+            for (column, quantity) in &asked_columns {
+                let per_area = ["stiffness", "conductance"].contains(&column.of);
                 let found = mean_with_error(&records, quantity, if per_area { 1.0 / area } else { 1.0 });
                 row.push(found.map(|(mean, _)| mean).into());
                 row.push(found.and_then(|(_, error)| error).into());
