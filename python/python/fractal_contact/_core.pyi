@@ -579,10 +579,14 @@ class ContactState:
         """
     @property
     def constriction_x_at_x(self) -> float | None:
-        """float or None: place x of the constriction along x, centre of this cell, along x [m]."""
+        """float or None: place x of the constriction along x, centre of this cell, along x; empty where the contact
+        closes every path [m].
+        """
     @property
     def constriction_x_at_y(self) -> float | None:
-        """float or None: place y of the constriction along x, centre of this cell, along y [m]."""
+        """float or None: place y of the constriction along x, centre of this cell, along y; empty where the contact
+        closes every path [m].
+        """
     @property
     def constriction_y(self) -> float | None:
         """float or None: gap of the critical constriction along y, the narrowest cell of the widest path; 0 where
@@ -590,10 +594,14 @@ class ContactState:
         """
     @property
     def constriction_y_at_x(self) -> float | None:
-        """float or None: place x of the constriction along y, centre of this cell, along x [m]."""
+        """float or None: place x of the constriction along y, centre of this cell, along x; empty where the contact
+        closes every path [m].
+        """
     @property
     def constriction_y_at_y(self) -> float | None:
-        """float or None: place y of the constriction along y, centre of this cell, along y [m]."""
+        """float or None: place y of the constriction along y, centre of this cell, along y; empty where the contact
+        closes every path [m].
+        """
     @property
     def largest_von_mises(self) -> float | None:
         """float or None: largest stress below the surface, largest equivalent stress of von Mises at the centres of
@@ -704,8 +712,20 @@ class ContactState:
         """
     @property
     def leakage_error(self) -> float | None:
-        """float or None: error of the leakage, half of the distance between the proven bounds of the network's flow,
-        over the flow.
+        """float or None: error of the leakage, proven relative error of the flow through the network of the cells:
+        half of the distance between its bounds, over the flow.
+        """
+    @property
+    def leakage_contact_error(self) -> float | None:
+        """float or None: error of the leakage by the gap, relative error of the leakage by the solve of the contact:
+        half of the difference between the flows with all gaps larger and smaller by `gap_error`, over the flow;
+        empty where that is not known.
+        """
+    @property
+    def gap_error(self) -> float | None:
+        """float or None: error of the gap, how far the gap of any cell is at most from that of the exact solution on
+        the same cells; known for elastic half-spaces without adhesion and hardness, under a force or an approach
+        [m].
         """
     @property
     def equilibrium(self) -> float | None:
