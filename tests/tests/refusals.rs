@@ -135,7 +135,9 @@ fn effects_are_refused() {
 fn two_effects_together_are_as_the_table_says() {
     let body = Body::Elastic { young: 2.0, poisson: 0.3 };
     let sphere = Surface::Sphere { radius: 1.0, size: 0.5.into() };
-    let scene = Scene::of_pair(sphere, Pair { first: body, second: body }).unwrap();
+    let scene = Scene::of_pair(sphere.clone(), Pair { first: body, second: body }).unwrap();
+    let incompressible = Body::Elastic { young: 2.0, poisson: 0.5 };
+    let one_body = Scene::of_pair(sphere, Pair { first: Body::Rigid, second: incompressible }).unwrap();
     let (mut refused, mut taken) = (0, 0);
     for record in fractal_contact::models::MODELS {
         let abilities = record.model.abilities();
@@ -144,9 +146,14 @@ fn two_effects_together_are_as_the_table_says() {
         {
             let Some(effects) = one.with(other) else { continue };
             let mut scene = Scene { effects, ..scene.clone() };
-            if effects.rheology != Rheology::Elastic && effects.friction == Friction::Off {
+            if effects.rheology != Rheology::Elastic {
                 // One body is rigid, and there is no stiffness.
-                (scene.pair, scene.outputs.stiffness) = (None, false);
+                if effects.friction == Friction::Off {
+                    scene.pair = None;
+                } else {
+                    scene = Scene { effects, ..one_body.clone() };
+                }
+                scene.outputs.stiffness = false;
             }
             if !abilities.effects.contains(&one) || !abilities.effects.contains(&other) {
                 unsupported(record.model, &scene);
