@@ -101,11 +101,7 @@ pub fn leakage<'py>(
     dict.set_item("continuum_upper", found.continuum.map(|bounds| bounds.upper))?;
     dict.set_item("mean_gap", found.mean_gap)?;
     dict.set_item("flow_factor", found.flow_factor.map(FlowBounds::middle))?;
-    let SheetFlow { mut potential, reached, flux, iterations, .. } = found.flow;
-    // By the maximum principle. In cells that conduct next to nothing beside others, the solver leaves any value.
-    for pressure in potential.values_mut() {
-        *pressure = pressure.clamp(0.0, 1.0);
-    }
+    let SheetFlow { potential, reached, flux, iterations, .. } = found.flow;
     dict.set_item("pressure", state::array(py, vec![potential])?)?;
     dict.set_item("reached", PyArray1::from_vec(py, reached).reshape([cells.rows, cells.columns])?)?;
     dict.set_item("flux", state::array(py, flux.into())?)?;

@@ -1,9 +1,9 @@
-//! What a scene reads off the interface of a state, beside its contact: paths, leakage, and the stress below.
+//! Leakage and paths through the gap of a state, and the stress below its surface.
 //!
 //! The crate `interface` computes these numbers from the fields of a state. They belong to the state because
 //! tables and pictures take all numbers from there.
 
-/// What was read off the interface of a state; each part is `None` where it was not requested.
+/// Leakage, paths and the largest stress below the surface; each part is `None` where it was not requested.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct InterfaceState {
@@ -36,7 +36,7 @@ pub struct LeakageState {
     pub flow_factor: Option<f64>,
 }
 
-/// What leads from one edge of a map to the opposite one.
+/// Paths from one edge of a map to the opposite one, and the narrowest place of the widest path.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PathState {

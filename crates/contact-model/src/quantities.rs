@@ -165,7 +165,7 @@ impl ContactState {
     }
 }
 
-/// Something that a scene reads off the fields of a state, beside the outputs of its model
+/// A result that a scene computes from the fields of a state, beside the outputs of its model
 /// ([`crate::InterfaceState`]).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum InterfaceOutput {
@@ -205,7 +205,7 @@ pub struct SceneProperties<'a> {
     pub effects: &'a Effects,
     /// Outputs that are requested.
     pub outputs: &'a Outputs,
-    /// What is read off the interface.
+    /// Results that are computed from the fields of a state.
     pub interface: &'a [InterfaceOutput],
     /// Whether the surface has an rms height, so that normalised forces exist.
     pub rough: bool,
@@ -232,7 +232,7 @@ pub enum AskedBy {
     PrescribedDistance,
     /// An output.
     Output(Output),
-    /// Something that is read off the interface.
+    /// A result that is computed from the fields of a state.
     Interface(InterfaceOutput),
     /// A stiffness of either kind, or a quantity that follows from one.
     AnyStiffness,
@@ -472,17 +472,17 @@ const STRESS_BELOW: AskedBy = AskedBy::Interface(InterfaceOutput::StressBelow);
 const YIELD_STRESS: AskedBy = AskedBy::Interface(InterfaceOutput::YieldStress);
 
 /// A number of the leakage.
-fn leaked(state: &ContactState, number: impl Fn(LeakageState) -> Option<f64>) -> Value {
+fn of_leakage(state: &ContactState, number: impl Fn(LeakageState) -> Option<f64>) -> Value {
     state.interface.leakage.and_then(number).into()
 }
 
 /// A number of the paths along x or along y.
-fn path(state: &ContactState, axis: usize, number: impl Fn(PathState) -> Option<f64>) -> Value {
+fn of_path(state: &ContactState, axis: usize, number: impl Fn(PathState) -> Option<f64>) -> Value {
     state.interface.percolation.and_then(|paths| number(paths[axis])).into()
 }
 
 /// A number of the largest stress.
-fn stressed(state: &ContactState, number: impl Fn(LargestStress) -> Option<f64>) -> Value {
+fn of_stress(state: &ContactState, number: impl Fn(LargestStress) -> Option<f64>) -> Value {
     state.interface.stress.and_then(number).into()
 }
 
@@ -624,74 +624,74 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
         => |s, _| s.conductance.into();
     "leakage" "leakage" "Q" Si("m^3/s"); LEAKAGE;
         "flow of the fluid through the network of the cells under the pressure drop; a cell conducts as its gap cubed"
-        => |s, _| leaked(s, |l| Some(l.flow));
+        => |s, _| of_leakage(s, |l| Some(l.flow));
     "leakage_lower" "lower bound of the leakage" "Q" Si("m^3/s"); LEAKAGE;
         "proven lower bound of the flow through the continuum with a constant gap in each cell"
         { drawn: false }
-        => |s, _| leaked(s, |l| Some(l.continuum[0]));
+        => |s, _| of_leakage(s, |l| Some(l.continuum[0]));
     "leakage_upper" "upper bound of the leakage" "Q" Si("m^3/s"); LEAKAGE;
         "proven upper bound of the flow through the continuum with a constant gap in each cell"
         { drawn: false }
-        => |s, _| leaked(s, |l| Some(l.continuum[1]));
+        => |s, _| of_leakage(s, |l| Some(l.continuum[1]));
     "flow_factor" "flow factor" "" One; LEAKAGE;
         "leakage over the flow between smooth surfaces at the mean gap, where cells in contact count as 0"
         { source: "Patir and Cheng, J. Lubr. Technol. 100, 12 (1978)" }
-        => |s, _| leaked(s, |l| l.flow_factor);
+        => |s, _| of_leakage(s, |l| l.flow_factor);
     "open_along_x" "open path along x" "" One; PERCOLATION;
         "1 where cells with a gap, joined by edges, lead between the opposite edges along x, otherwise 0"
         { drawn: false }
-        => |s, _| path(s, 0, |p| Some(as_number(p.open)));
+        => |s, _| of_path(s, 0, |p| Some(as_number(p.open)));
     "open_along_y" "open path along y" "" One; PERCOLATION;
         "1 where cells with a gap, joined by edges, lead between the opposite edges along y, otherwise 0"
         { drawn: false }
-        => |s, _| path(s, 1, |p| Some(as_number(p.open)));
+        => |s, _| of_path(s, 1, |p| Some(as_number(p.open)));
     "contact_along_x" "path of contact along x" "" One; PERCOLATION;
         "1 where cells in contact, joined by edges, lead between the opposite edges along x, otherwise 0"
         { drawn: false }
-        => |s, _| path(s, 0, |p| Some(as_number(p.contact)));
+        => |s, _| of_path(s, 0, |p| Some(as_number(p.contact)));
     "contact_along_y" "path of contact along y" "" One; PERCOLATION;
         "1 where cells in contact, joined by edges, lead between the opposite edges along y, otherwise 0"
         { drawn: false }
-        => |s, _| path(s, 1, |p| Some(as_number(p.contact)));
+        => |s, _| of_path(s, 1, |p| Some(as_number(p.contact)));
     "constriction_x" "critical constriction along x" "g_c" Si("m"); PERCOLATION;
         "gap of the critical constriction along x, the narrowest cell of the widest path; 0 where the contact closes every path"
-        => |s, _| path(s, 0, |p| Some(p.constriction));
+        => |s, _| of_path(s, 0, |p| Some(p.constriction));
     "constriction_x_at_x" "place x of the constriction along x" "" Si("m"); PERCOLATION;
         "centre of this cell, along x; empty where the contact closes every path"
         { average: Average::No, drawn: false }
-        => |s, _| path(s, 0, |p| p.centre.map(|centre| centre[0]));
+        => |s, _| of_path(s, 0, |p| p.centre.map(|centre| centre[0]));
     "constriction_x_at_y" "place y of the constriction along x" "" Si("m"); PERCOLATION;
         "centre of this cell, along y; empty where the contact closes every path"
         { average: Average::No, drawn: false }
-        => |s, _| path(s, 0, |p| p.centre.map(|centre| centre[1]));
+        => |s, _| of_path(s, 0, |p| p.centre.map(|centre| centre[1]));
     "constriction_y" "critical constriction along y" "g_c" Si("m"); PERCOLATION;
         "gap of the critical constriction along y, the narrowest cell of the widest path; 0 where the contact closes every path"
-        => |s, _| path(s, 1, |p| Some(p.constriction));
+        => |s, _| of_path(s, 1, |p| Some(p.constriction));
     "constriction_y_at_x" "place x of the constriction along y" "" Si("m"); PERCOLATION;
         "centre of this cell, along x; empty where the contact closes every path"
         { average: Average::No, drawn: false }
-        => |s, _| path(s, 1, |p| p.centre.map(|centre| centre[0]));
+        => |s, _| of_path(s, 1, |p| p.centre.map(|centre| centre[0]));
     "constriction_y_at_y" "place y of the constriction along y" "" Si("m"); PERCOLATION;
         "centre of this cell, along y; empty where the contact closes every path"
         { average: Average::No, drawn: false }
-        => |s, _| path(s, 1, |p| p.centre.map(|centre| centre[1]));
+        => |s, _| of_path(s, 1, |p| p.centre.map(|centre| centre[1]));
     "largest_von_mises" "largest stress below the surface" "" Si("Pa"); STRESS_BELOW;
         "largest equivalent stress of von Mises at the centres of cells, in the requested range of depths"
-        => |s, _| stressed(s, |l| Some(l.von_mises));
+        => |s, _| of_stress(s, |l| Some(l.von_mises));
     "largest_von_mises_depth" "depth of the largest stress" "z" Si("m"); STRESS_BELOW;
         "depth of this stress below the surface"
-        => |s, _| stressed(s, |l| Some(l.depth));
+        => |s, _| of_stress(s, |l| Some(l.depth));
     "largest_von_mises_x" "place x of the largest stress" "" Si("m"); STRESS_BELOW;
         "centre of the cell of this stress, along x"
         { average: Average::No, drawn: false }
-        => |s, _| stressed(s, |l| Some(l.centre[0]));
+        => |s, _| of_stress(s, |l| Some(l.centre[0]));
     "largest_von_mises_y" "place y of the largest stress" "" Si("m"); STRESS_BELOW;
         "centre of the cell of this stress, along y"
         { average: Average::No, drawn: false }
-        => |s, _| stressed(s, |l| Some(l.centre[1]));
+        => |s, _| of_stress(s, |l| Some(l.centre[1]));
     "factor_until_yield" "factor until yield" "" One; YIELD_STRESS;
         "yield stress over this stress: the factor on all pressures and tractions at which the body yields first"
-        => |s, _| stressed(s, |l| l.factor_until_yield);
+        => |s, _| of_stress(s, |l| l.factor_until_yield);
     "patches" "number of contacts" "" One; AskedBy::Output(Output::ContactPatches); "connected contact areas, cells joined by an edge"
         => |s, _| s.patches.as_ref().map(crate::Patches::count).into();
     "largest_patch" "area of the largest contact" "" Si("m^2"); AskedBy::Output(Output::ContactPatches); "area of the largest patch"
@@ -785,12 +785,12 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
         "proven relative error of the flow through the network of the cells: half of the distance between its bounds, over the flow"
         { role: Role::Residual("the flow through the network of the cells lies between two proven bounds: half of their distance, over the flow"),
           average: Average::No, drawn: false }
-        => |s, _| leaked(s, |l| Some(l.error));
+        => |s, _| of_leakage(s, |l| Some(l.error));
     "leakage_contact_error" "error of the leakage by the gap" "" One; LEAKAGE;
         "relative error of the leakage by the solve of the contact: half of the difference between the flows with all gaps larger and smaller by `gap_error`, over the flow; empty where that is not known"
         { role: Role::Residual("the contact is solved well enough for the leakage: what the error of the gap changes in it, over the flow"),
           average: Average::No, drawn: false }
-        => |s, _| leaked(s, |l| l.contact_error);
+        => |s, _| of_leakage(s, |l| l.contact_error);
     "gap_error" "error of the gap" "" Si("m"); AskedBy::Interface(InterfaceOutput::Gap);
         "how far the gap of any cell is at most from that of the exact solution on the same cells; known for elastic half-spaces \
          without adhesion and hardness, under a force or an approach"

@@ -60,7 +60,7 @@ pub struct ContactState {
     pub contact_radius: Option<f64>,
     /// The tangential part, for contacts with friction.
     pub tangential: Option<TangentialState>,
-    /// What was read off the interface, where a scene requests it. Models leave it empty.
+    /// Leakage, paths and the stress below the surface, where a scene requests them. Models leave it empty.
     #[cfg_attr(feature = "serde", serde(default))]
     pub interface: InterfaceState,
     /// The requested fields; they are not stored with the state.
@@ -182,7 +182,7 @@ impl ContactState {
         Self { tangential: tangential.into(), ..self }
     }
 
-    /// With what was read off the interface.
+    /// With leakage, paths and the stress below the surface.
     #[must_use]
     pub fn with_interface(self, interface: InterfaceState) -> Self {
         Self { interface, ..self }

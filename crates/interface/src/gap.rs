@@ -11,8 +11,8 @@ use contact_model::{ContactState, Error, Field, NormalLoad, Result};
 /// Cost: O(N) for N cells.
 ///
 /// # Errors
-/// [`Error::Unsupported`] for a state without the fields of the gap and of the pressure, which have to be requested
-/// of the model.
+/// [`Error::Shape`] for a state without the fields of the gap and of the pressure, which have to be requested of the
+/// model.
 ///
 /// ```
 /// use contact_model::{ContactState, Field, Fields, SolveReport};
@@ -38,8 +38,8 @@ pub fn open_gap(state: &ContactState) -> Result<Field> {
 /// A cell that bears a pressure has to have no gap, and no other cell a negative one. What a state leaves of this
 /// is at most v. The pressures of the state are then the exact ones of heights that differ from the given ones by v
 /// at most. Displacements of a half-space grow with each height, and by no more than the largest change of all
-/// heights, because the inverse of its kernel has negative entries beside its diagonal and no negative sum of a
-/// row. So the displacements, and with them the gaps, are those of the exact solution to v:
+/// heights, where the inverse of its kernel has no positive entry beside its diagonal and no negative sum of a row:
+/// it was so on every set of cells that was tried. So the displacements, and with them the gaps, are those of the exact solution to v:
 ///
 /// * with a prescribed approach, and under a force with periodic boundaries, the error is at most v;
 /// * under a force with free boundaries the approach has an error of at most v, and the gap one of at most 3 v.
@@ -61,8 +61,9 @@ pub fn gap_error(state: &ContactState, prescribed: NormalLoad) -> Result<Option<
 }
 
 fn gap_and_pressure(state: &ContactState) -> Result<(&Field, &Field)> {
-    let missing = |field: &str| {
-        Error::unsupported("the interface", format!("a state without the field of the {field}"))
+    let missing = |field: &'static str| {
+        let expected = format!("those of a map: request the output {field}").into();
+        Error::Shape { name: field.into(), found: 0, expected }
     };
     let gap = state.gap().ok_or_else(|| missing("gap"))?;
     Ok((gap, state.pressure().ok_or_else(|| missing("pressure"))?))

@@ -1,4 +1,4 @@
-//! What an interface lets through and what it bears, read off the fields of a contact state.
+//! What an interface lets through and what its bodies bear, computed from the fields of a contact state.
 //!
 //! Two bodies are in contact, and a solver has found the gap between them. Is the interface tight? If it is
 //! not, how much leaks through it, and which constriction decides? And where below the surface does the

@@ -1,4 +1,4 @@
-//! What a scene reads off the interface: leakage, percolation and the stress below the surface.
+//! The keys of leakage, percolation and the stress below the surface.
 
 use crate::scenes::read::{Diagnostic, Entry, ReadResult, System, printed};
 use contact_model::{Body, Friction, InterfaceOutput, Pair};
@@ -6,7 +6,7 @@ use interface::FlowAxis;
 use interface::stress::LoadedBody;
 use surface_io::Dimension;
 
-/// What is read off the interface of each state.
+/// Leakage, percolation and the stress below the surface, as far as a scene requests them of each state.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct RequestedInterface {
     /// Flow of a fluid between opposite edges.
@@ -40,7 +40,7 @@ pub struct RequestedStress {
 }
 
 impl RequestedInterface {
-    /// What it names.
+    /// All results that are requested.
     pub fn outputs(&self) -> Vec<InterfaceOutput> {
         let is_requested = |output: &InterfaceOutput| match output {
             InterfaceOutput::Leakage => self.leakage.is_some(),

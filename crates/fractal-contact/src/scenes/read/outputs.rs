@@ -122,7 +122,7 @@ pub struct RequestedOutputs {
     pub grid_error: bool,
     /// Whether statistics of the surface are computed: parameters, spectra, height differences.
     pub statistics: bool,
-    /// What is read off the interface.
+    /// Leakage, percolation and the stress below the surface.
     pub interface: RequestedInterface,
     /// Whether the law of the interface is written, for other programs.
     pub law: bool,

@@ -762,32 +762,37 @@ const LEAKAGE_EXAMPLE: &str =
     "add `leakage = { viscosity = \"1 mPa s\", pressure_drop = \"1 bar\", along = \"x\" }` to [outputs]";
 const STRESS_EXAMPLE: &str = "add `stress_below = { depths = [\"1 um\", \"2 um\", \"5 um\"] }` to [outputs]";
 
-/// Checks that the interface of the scene has what is requested.
+/// Checks that leakage, paths and the stress below the surface can be computed in the scene.
 fn check_interface(scene: &SceneFile, places: &Places) -> ReadResult<()> {
     let (outputs, requested) = (&scene.requested, &scene.requested.interface);
     let refused = |key: &str, message: String, help: &str| {
         Err(places.at_key(&format!("outputs.{key}"), message).with_help(help.to_owned()))
     };
-    for (output, field) in requested.outputs().into_iter().flat_map(|output| {
-        let gap = (output != InterfaceOutput::StressBelow).then_some((output, Output::Gap));
-        [Some((output, Output::Pressure)), gap].into_iter().flatten()
-    }) {
-        let lacks = |numerics: &&Numerics| !numerics.model().abilities().outputs.contains(&field);
-        if let Some(numerics) = scene.models.iter().find(lacks) {
-            let (key, model, field) = (output.key(), numerics.name(), field.name());
+    for output in requested.outputs() {
+        let needed: &[Output] = match output {
+            InterfaceOutput::StressBelow | InterfaceOutput::YieldStress => &[Output::Pressure],
+            _ => &[Output::Pressure, Output::Gap],
+        };
+        let lacking = |numerics: &Numerics| {
+            let known = numerics.model().abilities().outputs;
+            Some((numerics.name(), needed.iter().find(|field| !known.contains(field))?.name()))
+        };
+        if let Some((model, field)) = scene.models.iter().find_map(lacking) {
+            let key = output.key();
             let message =
                 format!("`{key}` needs the {field} of each cell, which the model {model} does not compute");
             return refused(key, message, "boundary elements do: `models = [\"bem3d\"]`");
         }
     }
-    let fields = [
-        ("fluid_pressure", &outputs.fluid_pressure, requested.leakage.is_none(), LEAKAGE_EXAMPLE),
-        ("flux", &outputs.flux, requested.leakage.is_none(), LEAKAGE_EXAMPLE),
-        ("von_mises", &outputs.von_mises, requested.stress_below.is_none(), STRESS_EXAMPLE),
-    ];
-    if let Some((key, _, _, help)) = fields.iter().find(|(_, asked, lacks, _)| *lacks && !asked.is_empty()) {
-        let missing = if *help == STRESS_EXAMPLE { "stress_below" } else { "leakage" };
-        return refused(key, format!("`{key}` is requested without `{missing}`"), help);
+    let (no_fluid, no_stress) = (requested.leakage.is_none(), requested.stress_below.is_none());
+    for (key, formats, lacks, missing, example) in [
+        ("fluid_pressure", &outputs.fluid_pressure, no_fluid, "leakage", LEAKAGE_EXAMPLE),
+        ("flux", &outputs.flux, no_fluid, "leakage", LEAKAGE_EXAMPLE),
+        ("von_mises", &outputs.von_mises, no_stress, "stress_below", STRESS_EXAMPLE),
+    ] {
+        if lacks && !formats.is_empty() {
+            return refused(key, format!("`{key}` is requested without `{missing}`"), example);
+        }
     }
     if outputs.law {
         if scene.effects.boundary != Boundary::Periodic {

@@ -1,22 +1,24 @@
-//! Reads off the interface of a state what the scene requests: leakage, percolation, stress below the surface.
+//! Leakage, percolation and the stress below the surface of a state, as far as the scene requests them.
 
-use crate::scenes::read::{RequestedLeakage, RequestedStress, SceneFile};
+use crate::scenes::read::{Numerics, RequestedLeakage, RequestedStress, SceneFile};
+use bem3d::PeriodicKernel;
 use contact_model::{
     Boundary, ContactState, Effect, Error, Field, Fields, InterfaceState, LargestStress, LeakageState,
     NormalLoad, PathState, Result, Stop,
 };
-use interface::stress::{StressedBody, SubsurfaceStress, SurfaceLoad, largest_von_mises};
+use interface::stress::{PeriodicLoad, StressedBody, SubsurfaceStress, SurfaceLoad, largest_von_mises};
 use interface::{FlowAxis, FlowBounds, FlowOptions, gap_error, leakage_until, open_gap, percolation};
 
 /// Relative width of the bounds of flows whose difference is an error.
 const ERROR_TOLERANCE: f64 = 1e-6;
 
-/// The state with what is read off its interface. Its fields have to be there.
+/// The state with its leakage, its paths and its stress below the surface. It has to have its fields.
 ///
 /// # Errors
 /// Those of the crate `interface`; [`Error::Stopped`].
 pub(crate) fn with_interface(
     scene: &SceneFile,
+    numerics: &Numerics,
     prescribed: NormalLoad,
     mut state: ContactState,
     stop: Stop<'_>,
@@ -26,7 +28,7 @@ pub(crate) fn with_interface(
         return Ok(state);
     }
     let boundary = scene.effects.boundary;
-    let gap_error = if requested.needs_gap() && is_elastic_half_space(scene) {
+    let gap_error = if requested.needs_gap() && is_elastic_half_space(scene, numerics) {
         gap_error(&state, prescribed)?
     } else {
         None
@@ -36,7 +38,7 @@ pub(crate) fn with_interface(
     let of_paths = gap.as_ref().filter(|_| requested.percolation);
     let flow = of_leakage.map(|(of, gap)| Flow::new(gap, gap_error, of, boundary, stop)).transpose()?;
     let of_stress = requested.stress_below.as_ref();
-    let stressed = of_stress.map(|of| stress(scene, &state, of, stop)).transpose()?;
+    let stressed = of_stress.map(|of| stress(scene, numerics, (&state, of), stop)).transpose()?;
     let read_off = InterfaceState {
         leakage: flow.as_ref().map(|flow| flow.numbers),
         percolation: of_paths.map(|gap| paths(gap, boundary)).transpose()?,
@@ -51,10 +53,16 @@ pub(crate) fn with_interface(
     Ok(state.with_interface(read_off).with_fields(fields))
 }
 
-/// Whether the bound of the error of the gap holds: without what changes the kernel, the heights or the law of a
-/// cell in normal contact.
-fn is_elastic_half_space(scene: &SceneFile) -> bool {
-    scene.effects.named().all(|effect| effect.key() == "friction" && effect != Effect::FullCoupling)
+/// Whether the bound of the error of the gap holds: with the kernel of pressures that are uniform on cells, and
+/// without an effect that changes the kernel, the heights or the law of a cell in normal contact.
+fn is_elastic_half_space(scene: &SceneFile, numerics: &Numerics) -> bool {
+    is_of_cells(numerics)
+        && scene.effects.named().all(|effect| effect.key() == "friction" && effect != Effect::FullCoupling)
+}
+
+/// Whether pressures are uniform on cells, as those of boundary elements usually are.
+fn is_of_cells(numerics: &Numerics) -> bool {
+    matches!(numerics, Numerics::Bem3d(model) if model.periodic_kernel == PeriodicKernel::Cells)
 }
 
 /// The flow of a fluid through a gap.
@@ -80,16 +88,16 @@ impl Flow {
         let FlowBounds { lower, upper } = flow.continuum.unwrap_or(flow.network);
         // What is small in the error needs few digits.
         let options = FlowOptions { tolerance: ERROR_TOLERANCE, continuum: false };
-        let shifted = |by: f64| -> Result<f64> {
+        let shifted = |by: f64| -> Result<FlowBounds> {
             let mut gap = gap.clone();
             for g in gap.values_mut() {
                 *g = (*g + by).max(0.0);
             }
-            Ok(leakage_until(&gap, along, boundary, options, stop)?.network.middle())
+            Ok(leakage_until(&gap, along, boundary, options, stop)?.network)
         };
         let total = found.network.middle();
         let contact_error = match gap_error.filter(|_| total > 0.0) {
-            Some(error) => Some(0.5 * (shifted(error)? - shifted(-error)?) / total),
+            Some(error) => Some(0.5 * (shifted(error)?.upper - shifted(-error)?.lower) / total),
             None => None,
         };
         let numbers = LeakageState {
@@ -129,16 +137,17 @@ fn paths(gap: &Field, boundary: Boundary) -> Result<[PathState; 2]> {
 /// The largest stress and, where it is requested, the stress at its depth.
 fn stress(
     scene: &SceneFile,
-    state: &ContactState,
-    of: &RequestedStress,
+    numerics: &Numerics,
+    (state, of): (&ContactState, &RequestedStress),
     stop: Stop<'_>,
 ) -> Result<(LargestStress, Option<Field>)> {
     let (body, poisson) = of
         .of_body(scene.pair, scene.effects.friction)
-        .map_err(|wrong| Error::unsupported("the stress below the surface", wrong.to_string()))?;
+        .map_err(|wrong| Error::unsupported(numerics.name(), wrong.to_string()))?;
     let none = Fields::default();
     let load = SurfaceLoad::of_state(state.fields.as_ref().unwrap_or(&none), body)?;
-    let body = StressedBody { boundary: scene.effects.boundary, ..StressedBody::new(poisson) };
+    let periodic = if is_of_cells(numerics) { PeriodicLoad::Cells } else { PeriodicLoad::Waves };
+    let body = StressedBody { poisson, boundary: scene.effects.boundary, periodic };
     let found = largest_von_mises(&load, body, &of.depths, stop)?;
     let factor = of.yield_stress.map(|stress| found.factor_until_yield(stress)).transpose()?;
     let field = if scene.requested.von_mises.is_empty() {

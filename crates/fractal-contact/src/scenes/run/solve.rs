@@ -208,10 +208,9 @@ impl ContactInHand<'_, '_> {
                 continue;
             }
             let found = match &loads {
-                Ok(loads) => self
-                    .contact
-                    .solve_until(loads[index], self.stop)
-                    .and_then(|state| with_interface(self.scene, loads[index].normal, state, self.stop)),
+                Ok(loads) => self.contact.solve_until(loads[index], self.stop).and_then(|state| {
+                    with_interface(self.scene, numerics, loads[index].normal, state, self.stop)
+                }),
                 // A surface without an rms height has no F_bar: no load has an answer, and each row says so.
                 Err(error) => Err(error.clone()),
             };
@@ -282,7 +281,8 @@ impl ContactInHand<'_, '_> {
     /// Solves the steps of a path after those of the result.
     fn path(&mut self, pieces: &[PathPiece]) -> Result<()> {
         let normalisation = self.contact.normalisation();
-        let model = self.unit.numerics(self.scene).name();
+        let numerics = self.unit.numerics(self.scene);
+        let model = numerics.name();
         let step_of = |index: usize, states: &[StateRecord]| {
             step_to(index, pieces, model, |before| Some(&states.get(before)?.solved()?.state))
         };
@@ -302,7 +302,7 @@ impl ContactInHand<'_, '_> {
                 Err(contact_model::Error::Stopped { .. }) => Ok(None),
                 // To its end: what the contact remembers belongs to the state that has been solved.
                 Ok(state) => {
-                    let state = with_interface(self.scene, step.load.normal, state, &never)?;
+                    let state = with_interface(self.scene, numerics, step.load.normal, state, &never)?;
                     Ok(Some((largest.enter(step.load.normal, state), true)))
                 }
                 // The best state of a solve that missed its tolerance or, beyond the pull-off force, the last

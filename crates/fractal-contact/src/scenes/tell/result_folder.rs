@@ -55,6 +55,7 @@ impl ResultFolder {
                 "ensemble.csv",
                 "patches.csv",
                 cycles::FILE,
+                law::FILE,
                 thresholds::FILE,
                 "report.html",
                 "manifest.json",
