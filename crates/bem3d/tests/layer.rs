@@ -106,6 +106,58 @@ fn the_stiffness_is_the_slope_of_the_force() {
     }
 }
 
+/// The approach of a rigid body to the base of a periodic layer, and its stiffness, against difference quotients and
+/// against the compression of a slab that cannot spread.
+#[test]
+fn a_whole_layer_yields_below_the_rough_surface() {
+    for (base, poisson) in [(LayerBase::Rigid, 0.3), (LayerBase::Slipping, 0.1), (LayerBase::Rigid, 0.5)] {
+        let layer = Layer { thickness: 0.2, young: 1.0, poisson, base };
+        let mut scene = scene(rough(), layer);
+        scene.effects.boundary = Boundary::Periodic;
+        scene.outputs.mean_gap = true;
+        let model = Bem3d { cells: 32, tolerance: 1e-10, ..Bem3d::default() };
+        let mut contact = ContactModel::prepare(&model, &scene, 3).unwrap();
+        let mut at = |force: f64| contact.solve(Load::force(force)).unwrap();
+        let force = 0.01;
+        let (state, touching) = (at(force), at(1e-12 * force));
+        let whole = state.whole_layer.unwrap();
+        let [below, above] = [1.0 - 1e-5, 1.0 + 1e-5].map(|factor| {
+            let state = at(factor * force);
+            (state.force, state.whole_layer.unwrap().approach)
+        });
+        let slope = (above.0 - below.0) / (above.1 - below.1);
+        assert!((whole.stiffness.unwrap() / slope - 1.0).abs() < 1e-4, "{whole:?} {slope}");
+        let modulus = (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+        let slab = force * layer.thickness / modulus;
+        let fall = touching.mean_gap.unwrap() - state.mean_gap.unwrap();
+        assert!((whole.approach - fall - slab).abs() < 1e-6 * fall, "{whole:?} {fall} {slab}");
+        assert!(whole.stiffness.unwrap() <= state.stiffness.unwrap());
+        // Complete contact is a slab between rigid plates.
+        let full = at(1e3);
+        assert!((full.area.unwrap() - 1.0).abs() < 1e-12);
+        let stiffness = full.whole_layer.unwrap().stiffness;
+        let of_slab = (poisson < 0.5).then_some(modulus / layer.thickness);
+        assert_eq!(stiffness.is_some(), of_slab.is_some());
+        assert!(stiffness.zip(of_slab).is_none_or(|(k, of_slab)| (k / of_slab - 1.0).abs() < 1e-12));
+    }
+}
+
+/// A half-space below the layer, or above it, falls without limit under the mean pressure.
+#[test]
+fn there_is_no_approach_to_a_half_space() {
+    let rigid = Layer { thickness: 0.2, young: 1.0, poisson: 0.3, base: LayerBase::Rigid };
+    let elastic = Layer { base: LayerBase::HalfSpace { young: 2.0, poisson: 0.3 }, ..rigid };
+    for (layer, share) in [(rigid, 1.0), (rigid, 0.5), (elastic, 1.0)] {
+        let mut scene = scene(rough(), layer);
+        scene.effects.boundary = Boundary::Periodic;
+        scene.contact_modulus *= share;
+        let whole = solve(&scene, 16, Load::force(1e-3)).whole_layer;
+        assert_eq!(whole.is_some(), layer == rigid && share == 1.0);
+        scene.effects.boundary = Boundary::Free;
+        assert_eq!(solve(&scene, 16, Load::force(1e-3)).whole_layer, None);
+    }
+}
+
 /// Cells of other sides, as the same problem turned by a right angle.
 #[test]
 fn oblong_cells_and_their_turned_copy() {

@@ -252,6 +252,22 @@ impl Layer {
         self.young / (1.0 - self.poisson * self.poisson)
     }
 
+    /// How much thinner a whole layer becomes per mean pressure on it, `h (1 + nu)(1 - 2 nu)/(E (1 - nu))`: under
+    /// the periodic copies of a map it cannot spread sideways, bonded to a rigid base or slipping on it. `None` on a
+    /// half-space, whose surface falls without limit.
+    ///
+    /// ```
+    /// use contact_model::{Layer, LayerBase};
+    /// let layer = Layer { thickness: 2.0, young: 1.0, poisson: 0.0, base: LayerBase::Slipping };
+    /// assert_eq!(layer.whole_compression(), Some(2.0));
+    /// assert_eq!(Layer { poisson: 0.5, ..layer }.whole_compression(), Some(0.0));
+    /// ```
+    pub fn whole_compression(&self) -> Option<f64> {
+        let &Self { thickness, young, poisson, base } = self;
+        let oedometric = young * (1.0 - poisson) / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+        (!matches!(base, LayerBase::HalfSpace { .. })).then(|| thickness / oedometric)
+    }
+
     /// The shear modulus of its material over that of the base: 0 on a rigid base.
     pub fn shear_ratio(&self) -> f64 {
         match self.base {

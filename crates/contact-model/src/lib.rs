@@ -29,7 +29,8 @@
 //!   force per length squared. Names that end in `_bar` are normalised, and [`Normalisation`] is the only
 //!   place that does this.
 //! * **Periodic boundaries.** There is no approach, but a mean gap. The stiffness is then the negative
-//!   derivative of the force with respect to the mean gap.
+//!   derivative of the force with respect to the mean gap. Only a layer on a rigid base has an approach as a
+//!   whole ([`WholeLayer`]).
 //! * **Paths.** With friction, rheology, a hardness or adhesion a state depends on the loads before it. Such
 //!   a path is followed [`Step`] by step.
 //! * **Tangential quantities** have two components: along x, the columns of a map, and along y, its rows.
@@ -98,7 +99,7 @@ pub use scaling::{ScaledState, Scaling};
 pub use scene::{Amplitude, Scene, SelfAffine, Surface, line_length};
 pub use state::{
     AdhesiveState, Branch, Certificate, ContactResolution, ContactState, PlasticState, PullOff, SolveReport,
-    Status, TangentialState, ViscoelasticState,
+    Status, TangentialState, ViscoelasticState, WholeLayer,
 };
 pub use step::Step;
 pub use table::{Column, Table};

@@ -226,6 +226,8 @@ pub enum AskedBy {
     RoughSurface,
     /// Free boundaries.
     FreeBoundary,
+    /// A layer on a rigid base, with periodic boundaries.
+    WholeLayer,
     /// A path.
     Path,
     /// A prescribed approach or mean gap.
@@ -253,6 +255,10 @@ impl AskedBy {
             Self::Always => true,
             Self::RoughSurface => scene.rough,
             Self::FreeBoundary => scene.effects.boundary == Boundary::Free,
+            Self::WholeLayer => {
+                scene.effects.boundary == Boundary::Periodic
+                    && scene.effects.layer.is_some_and(|layer| layer.whole_compression().is_some())
+            }
             Self::Path => scene.path,
             Self::PrescribedDistance => scene.prescribes_distance,
             Self::Output(output) => scene.outputs.asks(output),
@@ -275,6 +281,7 @@ impl AskedBy {
             Self::Always => "every scene".into(),
             Self::RoughSurface => "a rough surface".into(),
             Self::FreeBoundary => "free boundaries".into(),
+            Self::WholeLayer => "`layer` on a rigid base in [effects], periodic boundaries".into(),
             Self::Path => "a path".into(),
             Self::PrescribedDistance => "a prescribed approach or mean gap".into(),
             Self::Output(output) => format!("`{}` in [outputs]", output.name()),
@@ -508,6 +515,10 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
          of the gap field; with them it may be negative"
         { compared: Compared::Yes }
         => |s, _| s.mean_gap.into();
+    "whole_approach" "approach with the whole layer" "d" Si("m"); AskedBy::WholeLayer;
+        "of the rigid body to the base from first touch: the fall of the mean gap and the compression of the whole layer under the mean \
+         pressure; empty under an elastic body, whose half-space has no approach, and of a viscoelastic layer"
+        => |s, _| s.whole_layer.map(|whole| whole.approach).into();
     "contact_radius" "contact radius" "a" Si("m"); Path;
         "of a round contact; of an equivalent profile that of the round contact of the same stiffness, k/(2 E*)"
         => |s, _| s.contact_radius.into();
@@ -567,7 +578,8 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
     "plastic_work" "plastic work" "" Si("J"); Effect("hardness"); "energy dissipated in the plastic indentation, hardness times volume"
         => |s, _| s.plastic.map(|p| p.dissipated).into();
     "work" "work of the load" "W" Si("J"); VISCOELASTIC;
-        "work of the normal load since the first step: what the body holds and what has been dissipated in it"
+        "work of the normal load since the first step: what the body holds and what has been dissipated in it; periodic by the fall of \
+         the mean gap, without the compression of a whole layer"
         => |s, _| s.viscoelastic.and_then(|v| v.work).into();
     "branch" "branch" "" Word; Effect("adhesion"); "whether the bodies were brought nearer or drawn apart"
         { average: Average::No, drawn: false }
@@ -600,6 +612,9 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
          with full coupling the tangential load is held"
         { compared: Compared::Yes }
         => |s, _| s.stiffness.into();
+    "whole_stiffness" "stiffness with the whole layer" "k" Si("N/m"); All(&[AskedBy::WholeLayer, AskedBy::Output(Output::Stiffness)]);
+        "dF/dd of the approach with the whole layer along the branch of states; of an elastic layer under a rigid body"
+        => |s, _| s.whole_layer.and_then(|whole| whole.stiffness).into();
     "stiffness_bar" "stiffness" "\\bar{k}" One; AskedBy::Output(Output::Stiffness);
         "k/(1.1419 E* L) of this stiffness, L = sqrt(Lx Ly)"
         { role: Role::Normalised, source: "Pohrt, Popov, Filippov, Phys. Rev. E 86, 026710 (2012), Eq. 8", drawn: false }

@@ -1,7 +1,7 @@
 //! The physics of a scene: the surface, the material, the effects and the requested outputs.
 
 use crate::cells::Size;
-use crate::effects::{Boundary, Coupling, Effects, Friction, Hardness};
+use crate::effects::{Boundary, Coupling, Effects, Friction, Hardness, Layer};
 use crate::error::{Error, Result, positive};
 use crate::height_map::HeightMap;
 use crate::line::Line;
@@ -77,6 +77,11 @@ impl Scene {
                 Err(Error::unsupported(model, what))
             }
         }
+    }
+
+    /// Whether the body that presses on this layer of the scene is rigid: E* is then that of the layer alone.
+    pub fn is_pressed_by_a_rigid_body(&self, layer: &Layer) -> bool {
+        (self.contact_modulus / layer.modulus() - 1.0).abs() <= SAME_MODULUS
     }
 
     /// Checks the numbers that every model relies on: modulus, bodies, effects, outputs and the surface's own

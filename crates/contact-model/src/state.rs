@@ -44,6 +44,10 @@ pub struct ContactState {
     pub conductance: Option<f64>,
     /// Connected contact areas.
     pub patches: Option<Patches>,
+    /// Approach and stiffness with the compression of the whole layer, for periodic contacts of a rigid body with an
+    /// elastic layer on a rigid base.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub whole_layer: Option<WholeLayer>,
     /// The plastic part, for contacts with a hardness.
     pub plastic: Option<PlasticState>,
     /// The adhesive part, for contacts with adhesion that are solved cell by cell.
@@ -83,6 +87,7 @@ impl ContactState {
             area: None,
             conductance: None,
             patches: None,
+            whole_layer: None,
             plastic: None,
             adhesive: None,
             viscoelastic: None,
@@ -144,6 +149,12 @@ impl ContactState {
     #[must_use]
     pub fn with_patches(self, patches: impl Into<Option<Patches>>) -> Self {
         Self { patches: patches.into(), ..self }
+    }
+
+    /// With the approach to a whole layer.
+    #[must_use]
+    pub fn with_whole_layer(self, whole_layer: impl Into<Option<WholeLayer>>) -> Self {
+        Self { whole_layer: whole_layer.into(), ..self }
     }
 
     /// With a plastic part.
@@ -295,6 +306,19 @@ impl TangentialState {
     pub fn with_dissipated(self, dissipated: f64) -> Self {
         Self { dissipated, ..self }
     }
+}
+
+/// How a rigid body and an elastic layer on a rigid base approach each other as wholes, with periodic boundaries: by
+/// the fall of the mean gap since first touch, and by the compression of the whole layer under the mean pressure
+/// ([`crate::Layer::whole_compression`]), which the mean gap does not contain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct WholeLayer {
+    /// Approach of the rigid body and the base from first touch.
+    pub approach: f64,
+    /// The slope of the force over this approach, `1/(1/k + c/A0)` with the stiffness k, the compression c per mean
+    /// pressure and the area A0 of the map; `None` if no stiffness is requested, and without any compliance.
+    pub stiffness: Option<f64>,
 }
 
 /// The plastic part of a state, in a contact with a hardness p_s ([`crate::Hardness`]).

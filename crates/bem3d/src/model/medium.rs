@@ -2,7 +2,7 @@
 
 use super::options::NAME;
 use crate::kernel::{LayerOnGrid, LayerSymbol, Medium, PeriodicKernel};
-use contact_model::{Adhesion, Boundary, Conductance, Error, Friction, Result, Scene, Surface};
+use contact_model::{Adhesion, Boundary, Conductance, Error, Friction, Result, Rheology, Scene, Surface};
 
 /// The body under a scene's surface: under a profile with free boundaries a half-plane. With periodic ones
 /// the kernel of one row is that of plane strain by itself, because a pressure that is periodic with one row
@@ -86,6 +86,15 @@ pub(super) fn check_layer(scene: &Scene) -> Result<()> {
         return Err(Error::unsupported(NAME, what));
     }
     Ok(())
+}
+
+/// Compression per mean pressure of a whole layer that is on a rigid base under a rigid body, with periodic boundaries;
+/// `None` for another scene, and for a viscoelastic layer, whose compression has a history of its own.
+pub(super) fn whole_compression(scene: &Scene) -> Option<f64> {
+    let layer = scene.effects.layer.filter(|layer| scene.is_pressed_by_a_rigid_body(layer))?;
+    let is_elastic = scene.effects.rheology == Rheology::Elastic;
+    let is_periodic = scene.effects.boundary == Boundary::Periodic;
+    layer.whole_compression().filter(|_| is_elastic && is_periodic)
 }
 
 /// Smallest compliance of a layer for waves of two cells, over that of a half-space. The layer is what is left of a

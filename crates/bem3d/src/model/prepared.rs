@@ -69,6 +69,8 @@ pub struct PreparedSurface {
     pub(super) size: Size,
     /// Whether it is a profile: a body uniform along y.
     pub(super) is_profile: bool,
+    /// Compression of a whole layer per mean pressure, where states have an approach to it.
+    pub(super) whole_compression: Option<f64>,
 }
 
 impl Bem3d {
@@ -173,6 +175,7 @@ impl PreparedSurface {
             sliding,
             size: map.size(),
             is_profile: matches!(scene.surface, Surface::Profile(_)),
+            whole_compression: medium::whole_compression(scene),
         })
     }
 

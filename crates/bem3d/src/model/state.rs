@@ -9,7 +9,7 @@ use crate::geometry::{CellSet, Grid};
 use crate::response::NormalStiffness;
 use contact_model::{
     AdhesiveState, Boundary, Certificate, ContactResolution, ContactState, Error, Field, Fields, Interrupted,
-    Patches, PlasticState, Result, SolveReport, Status, Stop, Work, check_stop, never,
+    Patches, PlasticState, Result, SolveReport, Status, Stop, WholeLayer, Work, check_stop, never,
 };
 use std::f64::consts::PI;
 
@@ -134,10 +134,15 @@ impl PreparedSurface {
         let length = |value: f64| signed(value, &|v| units.approach(v));
         let stiffness = |k: Option<f64>| k.map(|k| signed(k, &|v| units.stiffness(v))).transpose();
         let mean_gap = self.mean_gap(found.complete, found.d, found.force);
-        ContactState::new(signed(PI * found.force, &|v| units.force(v))?, report)
+        let force = signed(PI * found.force, &|v| units.force(v))?;
+        let along_branch = stiffness(found.stiffness)?;
+        ContactState::new(force, report)
+            .with_whole_layer(
+                self.whole_layer((force, length(self.mean - mean_gap)?), (along_branch, found.complete))?,
+            )
             .with_approach(self.has_approach().then(|| length(found.d)).transpose()?)
             .with_mean_gap(self.outputs.mean_gap.then(|| length(mean_gap)).transpose()?)
-            .with_stiffness(stiffness(found.stiffness)?)
+            .with_stiffness(along_branch)
             .with_stiffness_fixed_area(stiffness(found.fixed_area)?)
             .with_area(self.outputs.area.then(|| units.area(found.area)).transpose()?)
             .with_plastic(self.plastic(found.yielded, found.indented.1)?)
@@ -147,6 +152,32 @@ impl PreparedSurface {
             .with_resolution(found.resolution)
             .with_fields(fields)
             .completed(&self.outputs, self.normalisation.contact_modulus)
+    }
+
+    /// The approach to a whole layer under a force, where the mean gap has fallen by `fall`, and its stiffness where
+    /// that of the mean gap was asked for; complete contact has no other compliance than the layer's.
+    ///
+    /// # Errors
+    /// [`Error::Domain`] for an approach beyond the numbers.
+    fn whole_layer(
+        &self,
+        (force, fall): (f64, f64),
+        (stiffness, complete): (Option<f64>, bool),
+    ) -> Result<Option<WholeLayer>> {
+        let Some(compression) = self.whole_compression else { return Ok(None) };
+        let compliance = compression / self.size.area();
+        let approach = fall + compliance * force;
+        if !approach.is_finite() {
+            return Err(Error::domain("approach with the whole layer", approach, "a number that fits f64"));
+        }
+        let with_layer = |compliance_of_gap: f64| 1.0 / (compliance_of_gap + compliance);
+        let stiffness = match stiffness {
+            _ if !self.outputs.stiffness => None,
+            None if complete => Some(with_layer(0.0)),
+            Some(0.0) | None => stiffness,
+            Some(k) => Some(with_layer(1.0 / k)),
+        };
+        Ok(Some(WholeLayer { approach, stiffness: stiffness.filter(|k| k.is_finite()) }))
     }
 
     /// Mean gap of a state with this approach and force: the distance between the mean plane of the defined

@@ -36,8 +36,8 @@ mod tests {
     use crate::scenes::{LoadList, LoadRequest, Numerics, PrescribedLoad, SceneFile, SceneSurface};
     use contact_model::quantities::{AskedBy, Average, QUANTITIES, Role};
     use contact_model::{
-        Adhesion, Boundary, Conductance, Effect, Friction, Hardness, InterfaceOutput, Load, Output, Outputs,
-        Rheology, SelfAffine, Step, Surface, Tangential,
+        Adhesion, Boundary, Conductance, Effect, Friction, Hardness, InterfaceOutput, Layer, LayerBase, Load,
+        Output, Outputs, Rheology, SelfAffine, Step, Surface, Tangential,
     };
     use interface::FlowAxis;
 
@@ -108,6 +108,10 @@ mod tests {
                 scene.request = LoadRequest::Path(vec![Step::new(0.0, Load::force(1.0)).into(); 2]);
             }
             AskedBy::All(each) => each.iter().for_each(|asked| ask(scene, *asked)),
+            AskedBy::WholeLayer => {
+                let layer = Layer { thickness: 1.0, young: 1.0, poisson: 0.3, base: LayerBase::Rigid };
+                (effects.layer, effects.boundary) = (Some(layer), Boundary::Periodic);
+            }
             AskedBy::Always | AskedBy::RoughSurface | AskedBy::FreeBoundary | AskedBy::PrescribedDistance => {
             }
         }
