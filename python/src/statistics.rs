@@ -82,6 +82,8 @@ pub fn parameters<'py>(py: Python<'py>, map: &PyHeightMap, periodic: bool) -> Py
         all.push(("rms_curvature", derivatives.as_ref().map(|d| d.rms_curvature)));
         let moments = fractal_contact::surface_gen::MapStatistics::new(of).ok();
         all.push(("nayak", moments.as_ref().map(nayak_parameter).filter(|alpha| alpha.is_finite())));
+        let energy = periodic.then(|| fractal_contact::surface_gen::full_contact_energy(of).ok()).flatten();
+        all.push(("full_contact_energy", energy));
         Ok(all)
     });
     let dict = PyDict::new(py);

@@ -152,7 +152,7 @@ fn there_is_no_approach_to_a_half_space() {
         scene.effects.boundary = Boundary::Periodic;
         scene.contact_modulus *= share;
         let whole = solve(&scene, 16, Load::force(1e-3)).whole_layer;
-        assert_eq!(whole.is_some(), layer == rigid && share == 1.0);
+        assert_eq!(whole.is_some(), layer == rigid && share > 0.9);
         scene.effects.boundary = Boundary::Free;
         assert_eq!(solve(&scene, 16, Load::force(1e-3)).whole_layer, None);
     }

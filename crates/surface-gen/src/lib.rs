@@ -93,8 +93,9 @@ pub use line::{LineGenerator, self_affine_line};
 pub use map::{MapGenerator, self_affine_map};
 pub use measure::{
     Band, HeightMoments, MapEdges, MapPlane, MapStatistics, SelfAffineFit, Wave, boundary_edges,
-    defined_everywhere, fit_range, hann_window, hurst_from_line_spectrum, hurst_from_spectrum, line_spectrum,
-    patches, periodogram, radial_spectrum, rms_height, rms_slope, rms_slope_differences, windowed,
+    defined_everywhere, fit_range, full_contact_energy, hann_window, hurst_from_line_spectrum,
+    hurst_from_spectrum, line_spectrum, patches, periodogram, radial_spectrum, rms_height, rms_slope,
+    rms_slope_differences, windowed,
 };
 pub use memory::{height_map_memory, wave_map_memory};
 pub use phases::{line_phase, map_phase};

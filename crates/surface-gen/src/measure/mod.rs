@@ -16,7 +16,7 @@ pub use moments::{HeightMoments, rms_height, rms_slope_differences};
 pub use patches::{boundary_edges, patches};
 pub use plane::MapPlane;
 pub use self_affine_fit::SelfAffineFit;
-pub use spectra::{Wave, line_spectrum, periodogram, radial_spectrum, rms_slope};
+pub use spectra::{Wave, full_contact_energy, line_spectrum, periodogram, radial_spectrum, rms_slope};
 pub use statistics::{Band, MapEdges, MapStatistics};
 pub(crate) use statistics::{homogeneous, rms_by_wave};
 pub use window::{fit_range, hann_window, windowed};

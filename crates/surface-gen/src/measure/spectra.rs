@@ -110,6 +110,30 @@ pub fn rms_slope(map: &HeightMap) -> Result<f64> {
     Ok(TAU * sum.sqrt() * (unit / map.length()))
 }
 
+/// Elastic energy of full contact with a periodic map, per area and over E*: `(1/4) sum |q| |H(q)|^2`, a length.
+///
+/// E* times it is the work per area that presses the surface flat. An adhesion whose work per area is larger pulls it
+/// into full contact by itself (Persson and Tosatti, J. Chem. Phys. 115, 5597 (2001)). It is that of half-spaces, and
+/// of the waves of the map. Cost O(N log N) for N cells, memory about that of the map.
+///
+/// # Errors
+/// [`contact_model::Error::Domain`] for a map with undefined points.
+///
+/// ```
+/// use contact_model::Surface;
+/// // A wave of amplitude a is pressed flat by a mean pressure E* q a/2, whose work per area is E* q a^2/8.
+/// let sine = Surface::Sine { amplitude: 0.1, wavelength: 1.0, size: 1.0.into() };
+/// let energy = surface_gen::full_contact_energy(&*surface_gen::height_map(&sine, 16, 0)?)?;
+/// assert!((energy - 0.007853981633974483).abs() < 1e-15);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+pub fn full_contact_energy(map: &HeightMap) -> Result<f64> {
+    let mut sum = 0.0;
+    let lattice = Lattice::new(map.cells(), map.size());
+    let unit = waves(map, &lattice, |square, power, copies, _| sum += copies * square.sqrt() * power)?;
+    Ok(0.25 * TAU * sum * unit * (unit / map.length()))
+}
+
 /// Spectrum of a map averaged over rings: pairs (q, C_2D) in units of 1/length and length^4, for ring 1, 2,
 /// ... up to `|q| = pi / max(dx, dy)` (N/2 for a square of N x N cells).
 ///

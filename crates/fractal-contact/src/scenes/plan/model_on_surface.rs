@@ -6,7 +6,7 @@ use contact_model::{Cells, Scene};
 
 /// Number of the format of stored states. Raise it with anything that changes a state: the numbers of a model or of
 /// `surface-gen`, or what is stored of a state. `bem3d` has a number of its own, which enters the keys too.
-pub const FORMAT: u32 = 15;
+pub const FORMAT: u32 = 16;
 
 /// Time of a picture, whatever it shows. Like [`MILLISECONDS_OF_CELL`] it was measured once, on one scene: `press` of
 /// a map of 640 x 480 cells under three loads, with pictures and without.

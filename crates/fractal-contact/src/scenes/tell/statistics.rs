@@ -111,6 +111,7 @@ impl MapStatisticsTables {
             return found;
         }
         found.heights(map);
+        found.full_contact(map, boundary);
         // Of a map that was filled before, and of one whose undefined points are filled for this.
         let points = filled.cloned().unwrap_or_else(|| FilledPoints::new(map));
         let whole = found.known("filled map", surface_io::filled(map));
@@ -220,6 +221,17 @@ impl MapStatisticsTables {
             let nayak = surface_statistics::nayak_parameter(&statistics);
             let meaning = "Nayak's parameter m0 m4/m2^2, at least 1.5: the wider the spectrum, the larger";
             self.push("alpha", Some(nayak).filter(|a| a.is_finite()), 0, meaning);
+        }
+    }
+
+    /// The energy of full contact, which a map that is not periodic does not have.
+    fn full_contact(&mut self, map: &HeightMap, boundary: Boundary) {
+        if boundary == Boundary::Periodic
+            && let Some(energy) = self.known("energy of full contact", surface_gen::full_contact_energy(map))
+        {
+            let meaning =
+                "elastic energy per area that presses the periodic map flat, over E*: the sum of |q| |H|^2/4";
+            self.push("full contact energy", Some(energy), 1, meaning);
         }
     }
 
