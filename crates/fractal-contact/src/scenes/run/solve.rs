@@ -1,13 +1,13 @@
 //! Solves one model on one surface under all loads, or along the whole path.
 
-use crate::scenes::plan::{GridComparison, ModelOnSurface, solved_map};
+use crate::scenes::plan::{GridComparison, ModelOnSurface, solved_map, with_interface};
 use crate::scenes::read::{
     Error, FieldFormat, HEIGHTS, LoadList, LoadRequest, Numerics, PathPiece, Result, SceneFile, cells,
     distributed, step_to, words,
 };
 use crate::scenes::run::{
     Answer, AnsweredState, FieldFile, FieldView, Folder, Keeper, ModelResult, SharedLines, StateRecord,
-    Warning, field_pictures, with_interface,
+    Warning, field_pictures,
 };
 use contact_model::{
     Cells, ContactState, Field, FieldQuantity, LargestPull, Load, NormalLoad, Normalisation, PreparedContact,
