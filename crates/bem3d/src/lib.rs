@@ -308,6 +308,7 @@
 
 mod active_set;
 mod adhesion;
+mod conduction;
 mod friction;
 mod geometry;
 mod kernel;
@@ -322,6 +323,7 @@ mod tasks;
 mod tuning;
 
 // All that a first program needs beside the model itself: scenes, loads, states, height maps, the traits.
+pub use conduction::{Film, FilmConductance, film_conductance, film_conductance_until};
 #[doc(no_inline)]
 pub use contact_model::*;
 pub use kernel::{PeriodicKernel, love};

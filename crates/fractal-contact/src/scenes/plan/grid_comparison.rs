@@ -1,5 +1,6 @@
 //! What the grid does to a state: the same load on the same surface with cells twice and four times as large.
 
+use crate::scenes::plan::with_interface;
 use crate::scenes::read::{Numerics, SceneFile, cells};
 use analysis::{GridError, grid_error};
 use contact_model::quantities::{Compared, QUANTITIES, StateQuantity};
@@ -145,16 +146,22 @@ fn solve(scene: &SceneFile, seed: u64, loads: &[Load], stop: Stop<'_>) -> Result
     let numerics = &scene.models[0];
     let slope = rms_slope(scene, &*solved_map(scene, numerics, seed, stop)?)?;
     let mut found = vec![None; loads.len()];
+    let interface = !scene.requested.interface.outputs().is_empty();
     let mut outputs = scene.requested.outputs;
-    for &output in Output::ALL.iter().filter(|output| output.is_field() || **output == Output::ContactPatches)
-    {
+    // Leakage and stress are read off the fields.
+    let dropped = |output: &Output| output.is_field() && !interface || *output == Output::ContactPatches;
+    for &output in Output::ALL.iter().filter(|output| dropped(output)) {
         outputs.ask(output, false);
     }
     let physics = Scene { outputs, ..scene.scene(numerics, seed)? };
     let mut contact = numerics.model().prepare_until(&physics, seed, stop)?;
     let normalisation = contact.normalisation();
     contact.sweep(loads, stop, &mut |i, state| {
-        found[i] = state.ok().map(|state| numbers(&state, &normalisation, slope));
+        let state = state.and_then(|state| with_interface(scene, numerics, loads[i].normal, state, stop));
+        found[i] = match state {
+            Err(Error::Stopped { best }) => return Err(Error::Stopped { best }),
+            state => state.ok().map(|state| numbers(&state, &normalisation, slope)),
+        };
         Ok(())
     })?;
     Ok(found)
