@@ -13,6 +13,9 @@ pub struct InterfaceState {
     pub percolation: Option<[PathState; 2]>,
     /// The largest stress below the surface.
     pub stress: Option<LargestStress>,
+    /// Conduction through the contact and a film in the gap around it.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub film: Option<FilmState>,
     /// How far the gap of any cell is at most from that of the exact solution on the same cells; `None` where no
     /// bound is known.
     pub gap_error: Option<f64>,
@@ -34,6 +37,20 @@ pub struct LeakageState {
     /// The flow over that between smooth surfaces at the mean gap, cells in contact counting as 0; `None` for
     /// an interface without any gap.
     pub flow_factor: Option<f64>,
+}
+
+/// Conduction through the contact of a state and a film that fills the gap around it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FilmState {
+    /// From one body to the other: the conductance of the sample with free boundaries; with periodic ones that of the
+    /// interface alone, per area. The middle of its bounds.
+    pub through: f64,
+    /// Half of the distance between these bounds, over the conductance.
+    pub error: f64,
+    /// Conductance of the film alone between opposite edges of the map, and half of the distance between its bounds
+    /// over it; `None` where it was not requested.
+    pub along: Option<(f64, f64)>,
 }
 
 /// Paths from one edge of a map to the opposite one, and the narrowest place of the widest path.

@@ -81,7 +81,7 @@ pub use error::{Error, Result};
 pub use escape::{Escaping, escaped};
 pub use fields::{FIELDS, Field, FieldQuantity, Fields, StickSlip};
 pub use height_map::HeightMap;
-pub use interface_state::{InterfaceState, LargestStress, LeakageState, PathState};
+pub use interface_state::{FilmState, InterfaceState, LargestStress, LeakageState, PathState};
 pub use line::Line;
 pub use load::{Directions, Load, NormalLoad, Tangential};
 pub use memory::PathMemory;

@@ -9,7 +9,7 @@
 use crate::conductance::Conductance;
 use crate::effects::{Boundary, Effects, Friction};
 use crate::error::Result;
-use crate::interface_state::{LargestStress, LeakageState, PathState};
+use crate::interface_state::{FilmState, LargestStress, LeakageState, PathState};
 use crate::load::Directions;
 use crate::normalisation::Normalisation;
 use crate::state::ContactState;
@@ -177,14 +177,25 @@ pub enum InterfaceOutput {
     StressBelow,
     /// The factor until a yield stress is reached there.
     YieldStress,
-    /// The gap of each cell, which leakage and paths need.
+    /// Conduction through the contact and a film in the gap.
+    Film,
+    /// Conduction of this film between opposite edges.
+    FilmAlong,
+    /// The gap of each cell, which leakage, paths and a film need.
     Gap,
 }
 
 impl InterfaceOutput {
     /// All of them.
-    pub const ALL: [Self; 5] =
-        [Self::Leakage, Self::Percolation, Self::StressBelow, Self::YieldStress, Self::Gap];
+    pub const ALL: [Self; 7] = [
+        Self::Leakage,
+        Self::Percolation,
+        Self::StressBelow,
+        Self::YieldStress,
+        Self::Film,
+        Self::FilmAlong,
+        Self::Gap,
+    ];
 
     /// The key in `[outputs]` of a scene, or in a table there.
     pub fn key(self) -> &'static str {
@@ -193,6 +204,8 @@ impl InterfaceOutput {
             Self::Percolation => "percolation",
             Self::StressBelow => "stress_below",
             Self::YieldStress => "yield_stress",
+            Self::Film => "film",
+            Self::FilmAlong => "along",
             Self::Gap => "gap",
         }
     }
@@ -226,6 +239,8 @@ pub enum AskedBy {
     RoughSurface,
     /// Free boundaries.
     FreeBoundary,
+    /// Periodic boundaries.
+    PeriodicBoundary,
     /// A layer on a rigid base, with periodic boundaries.
     WholeLayer,
     /// A path.
@@ -255,6 +270,7 @@ impl AskedBy {
             Self::Always => true,
             Self::RoughSurface => scene.rough,
             Self::FreeBoundary => scene.effects.boundary == Boundary::Free,
+            Self::PeriodicBoundary => scene.effects.boundary == Boundary::Periodic,
             Self::WholeLayer => {
                 scene.effects.boundary == Boundary::Periodic
                     && scene.effects.layer.is_some_and(|layer| layer.whole_compression().is_some())
@@ -281,6 +297,7 @@ impl AskedBy {
             Self::Always => "every scene".into(),
             Self::RoughSurface => "a rough surface".into(),
             Self::FreeBoundary => "free boundaries".into(),
+            Self::PeriodicBoundary => "periodic boundaries".into(),
             Self::WholeLayer => "`layer` on a rigid base in [effects], periodic boundaries".into(),
             Self::Path => "a path".into(),
             Self::PrescribedDistance => "a prescribed approach or mean gap".into(),
@@ -288,6 +305,7 @@ impl AskedBy {
             Self::Interface(InterfaceOutput::YieldStress) => {
                 "`yield_stress` in `stress_below` of [outputs]".into()
             }
+            Self::Interface(InterfaceOutput::FilmAlong) => "`along` in `film` of [outputs]".into(),
             Self::Interface(InterfaceOutput::Gap) => "`leakage` or `percolation` in [outputs]".into(),
             Self::Interface(output) => format!("`{}` in [outputs]", output.key()),
             Self::AnyStiffness => "a stiffness or the conductance in [outputs]".into(),
@@ -312,6 +330,8 @@ pub enum QuantityUnit {
     Si(&'static str),
     /// The unit of the requested conductance, electrical or thermal.
     Conductance,
+    /// The same per area.
+    ConductancePerArea,
 }
 
 impl QuantityUnit {
@@ -323,6 +343,10 @@ impl QuantityUnit {
             Self::Si(unit) => unit,
             Self::Conductance if matches!(outputs.conductance, Conductance::Thermal { .. }) => "W/K",
             Self::Conductance => "S",
+            Self::ConductancePerArea if matches!(outputs.conductance, Conductance::Thermal { .. }) => {
+                "W/(m^2 K)"
+            }
+            Self::ConductancePerArea => "S/m^2",
         }
     }
 
@@ -333,6 +357,7 @@ impl QuantityUnit {
             Self::One => "1",
             Self::Si(unit) => unit,
             Self::Conductance => "S, W/K",
+            Self::ConductancePerArea => "S/m^2, W/(m^2 K)",
         }
     }
 }
@@ -477,10 +502,17 @@ const LEAKAGE: AskedBy = AskedBy::Interface(InterfaceOutput::Leakage);
 const PERCOLATION: AskedBy = AskedBy::Interface(InterfaceOutput::Percolation);
 const STRESS_BELOW: AskedBy = AskedBy::Interface(InterfaceOutput::StressBelow);
 const YIELD_STRESS: AskedBy = AskedBy::Interface(InterfaceOutput::YieldStress);
+const FILM: AskedBy = AskedBy::Interface(InterfaceOutput::Film);
+const FILM_ALONG: AskedBy = AskedBy::Interface(InterfaceOutput::FilmAlong);
 
 /// A number of the leakage.
 fn of_leakage(state: &ContactState, number: impl Fn(LeakageState) -> Option<f64>) -> Value {
     state.interface.leakage.and_then(number).into()
+}
+
+/// A number of the conduction through a film.
+fn of_film(state: &ContactState, number: impl Fn(FilmState) -> Option<f64>) -> Value {
+    state.interface.film.and_then(number).into()
 }
 
 /// A number of the paths along x or along y.
@@ -637,8 +669,25 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
         "2 k/(E* (rho_1 + rho_2)) with the stiffness at fixed contact area (Barber)"
         { compared: Compared::Yes, source: "Barber, Proc. R. Soc. A 459, 53 (2003)" }
         => |s, _| s.conductance.into();
+    "film_conductance" "conductance with the film" "Λ" QuantityUnit::Conductance; All(&[FILM, FreeBoundary]);
+        "current through the sample per potential difference far away: through the contact and the film in the gap, which share the \
+         resistance of the bodies"
+        { compared: Compared::Yes }
+        => |s, _| of_film(s, |f| Some(f.through));
+    "film_conductance_per_area" "conductance with the film, per area" "Λ/A_0" QuantityUnit::ConductancePerArea;
+        All(&[FILM, AskedBy::PeriodicBoundary]);
+        "conductance of the interface per nominal area, through the contact and the film in the gap; the resistance of the bodies above \
+         and below adds to its own"
+        { compared: Compared::Yes }
+        => |s, _| of_film(s, |f| Some(f.through));
+    "film_conductance_along" "conductance of the film along the interface" "Λ" QuantityUnit::Conductance; FILM_ALONG;
+        "current in the film between opposite edges of the map per potential difference, a cell conducting as its gap; the contact and the \
+         bodies carry none of it"
+        { compared: Compared::Yes }
+        => |s, _| of_film(s, |f| f.along.map(|(along, _)| along));
     "leakage" "leakage" "Q" Si("m^3/s"); LEAKAGE;
         "flow of the fluid through the network of the cells under the pressure drop; a cell conducts as its gap cubed"
+        { compared: Compared::Yes }
         => |s, _| of_leakage(s, |l| Some(l.flow));
     "leakage_lower" "lower bound of the leakage" "Q" Si("m^3/s"); LEAKAGE;
         "proven lower bound of the flow through the continuum with a constant gap in each cell"
@@ -650,7 +699,7 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
         => |s, _| of_leakage(s, |l| Some(l.continuum[1]));
     "flow_factor" "flow factor" "" One; LEAKAGE;
         "leakage over the flow between smooth surfaces at the mean gap, where cells in contact count as 0"
-        { source: "Patir and Cheng, J. Lubr. Technol. 100, 12 (1978)" }
+        { compared: Compared::Yes, source: "Patir and Cheng, J. Lubr. Technol. 100, 12 (1978)" }
         => |s, _| of_leakage(s, |l| l.flow_factor);
     "open_along_x" "open path along x" "" One; PERCOLATION;
         "1 where cells with a gap, joined by edges, lead between the opposite edges along x, otherwise 0"
@@ -692,6 +741,7 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
         => |s, _| of_path(s, 1, |p| p.centre.map(|centre| centre[1]));
     "largest_von_mises" "largest stress below the surface" "" Si("Pa"); STRESS_BELOW;
         "largest equivalent stress of von Mises at the centres of cells, in the requested range of depths"
+        { compared: Compared::Yes }
         => |s, _| of_stress(s, |l| Some(l.von_mises));
     "largest_von_mises_depth" "depth of the largest stress" "z" Si("m"); STRESS_BELOW;
         "depth of this stress below the surface"
@@ -801,6 +851,20 @@ pub static QUANTITIES: &[StateQuantity] = &quantities! {
         { role: Role::Residual("the flow through the network of the cells lies between two proven bounds: half of their distance, over the flow"),
           average: Average::No, drawn: false }
         => |s, _| of_leakage(s, |l| Some(l.error));
+    "film_conductance_error" "error of the conductance with the film" "" One; FILM;
+        "proven relative error of the conductance through the contact and the film on these cells: half of the distance between its bounds, \
+         over the conductance"
+        { role: Role::Residual("the conductance of the equations on the cells lies between two proven bounds: half of their distance, over the \
+                                conductance"),
+          average: Average::No, drawn: false }
+        => |s, _| of_film(s, |f| Some(f.error));
+    "film_conductance_along_error" "error of the conductance along the film" "" One; FILM_ALONG;
+        "proven relative error of the conductance through the network of the cells: half of the distance between its bounds, over the \
+         conductance"
+        { role: Role::Residual("the conductance of the network of the cells lies between two proven bounds: half of their distance, over the \
+                                conductance"),
+          average: Average::No, drawn: false }
+        => |s, _| of_film(s, |f| f.along.map(|(_, error)| error));
     "leakage_contact_error" "error of the leakage by the gap" "" One; LEAKAGE;
         "relative error of the leakage by the solve of the contact: half of the difference between the flows with all gaps larger and smaller by `gap_error`, over the flow; empty where that is not known"
         { role: Role::Residual("the contact is solved well enough for the leakage: what the error of the gap changes in it, over the flow"),

@@ -1,6 +1,9 @@
 //! What a scene reads off the interface: leakage with its bounds, paths, and the stress below the surface.
 
-use fractal_contact::interface::{FlowAxis, bracketed_force, gap_error, leakage, open_gap, percolation};
+use fractal_contact::bem3d::{Film, film_conductance};
+use fractal_contact::interface::{
+    FlowAxis, bracketed_force, conductance, gap_error, leakage, open_gap, percolation,
+};
 use fractal_contact::scenes::{Options, Plan, SceneFile, run};
 use fractal_contact::{Bem3d, Boundary, ContactModel, Error, Field, Load, Scene, Surface, never};
 use runs::{CsvFile, Silent};
@@ -206,4 +209,67 @@ fn the_field_of_the_stress_and_the_notes() {
     assert!(!results(directory.path(), &deep).texts("note").unwrap()[0].contains("depths"));
     let lifted = results(directory.path(), ROUGH);
     assert!(lifted.texts("note").unwrap()[0].contains("fluid pressure not small beside the mean pressure"));
+}
+
+/// A film adds to the conductance of the contact: of the interface per area where the map repeats, of the sample where
+/// it ends.
+#[test]
+fn a_scene_conducts_through_its_film() {
+    let directory = tempfile::tempdir().unwrap();
+    let outputs = "conductance = { kind = \"electrical\", resistivities = [0.4, 0.6] }\nfilm = { resistivity = 50, along = \"y\" }\n";
+    let periodic =
+        ROUGH.split("[outputs]").next().unwrap().to_owned() + "[outputs]\ngap = [\"npy\"]\n" + outputs;
+    for (boundary, name) in [("periodic", "film_conductance_per_area"), ("free", "film_conductance")] {
+        let text = periodic.replace("\"periodic\"", &format!("\"{boundary}\""));
+        let found = results(directory.path(), &text);
+        let scene = SceneFile::read(&directory.path().join("scene.toml")).unwrap();
+        let physics = scene.scene(&scene.models[0], scene.seed(0)).unwrap();
+        let mut contact = scene.models[0].model().prepare(&physics, scene.seed(0)).unwrap();
+        for (i, pressure) in [0.01, 0.1].into_iter().enumerate() {
+            let gap = open_gap(&contact.solve(Load::force(pressure)).unwrap()).unwrap();
+            let film = Film { resistivity: 50.0, bodies: 1.0 };
+            let through = film_conductance(&gap, film, physics.effects.boundary).unwrap().middle();
+            assert!((column(&found, name)[i] / through - 1.0).abs() < 1e-6);
+            // More than the contact alone, and both grow with the load.
+            assert!(through > column(&found, "conductance")[i]);
+            assert!(column(&found, "film_conductance_error")[i] < 1e-8);
+            let sheet = gap.values().iter().map(|g| g / 50.0).collect();
+            let sheet = Field::new(64, 1.0, sheet).unwrap();
+            let along = conductance(&sheet, FlowAxis::Y, physics.effects.boundary).unwrap().network.middle();
+            assert!((column(&found, "film_conductance_along")[i] - along).abs() <= 1e-8 * along);
+        }
+        assert!(column(&found, name)[0] < column(&found, name)[1]);
+        assert!(column(&found, "film_conductance_along")[0] > column(&found, "film_conductance_along")[1]);
+        std::fs::remove_dir_all(directory.path().join("out")).unwrap();
+    }
+}
+
+/// What is read off the fields is compared with the same of coarser grids, whose error it then has.
+#[test]
+fn grids_are_compared_in_leakage_and_stress() {
+    let directory = tempfile::tempdir().unwrap();
+    let asked = "grid_error = true\nstress_below = { depths = [0.05, 0.1] }\n";
+    let text =
+        ROUGH.replace("contact_modulus = 1", "bodies = [\"rigid\", { young = 0.75, poisson = 0.5 }]") + asked;
+    let fine = results(directory.path(), &text);
+    std::fs::remove_dir_all(directory.path().join("out")).unwrap();
+    let on = |cells: &str| {
+        let text = text.replace("cells = 64", cells).replace("grid_error = true\n", "");
+        let found = results(directory.path(), &text);
+        std::fs::remove_dir_all(directory.path().join("out")).unwrap();
+        found
+    };
+    let (half, quarter) = (on("cells = 32"), on("cells = 16"));
+    for name in ["leakage", "flow_factor", "largest_von_mises", "mean_gap"] {
+        let errors = fine.numbers(&format!("{name}_grid_error")).unwrap();
+        for (i, error) in errors.into_iter().enumerate() {
+            let [fine, half, quarter] = [&fine, &half, &quarter].map(|on| column(on, name)[i]);
+            let expected = analysis::grid_error(fine, half, quarter).map(|found| found.error);
+            let same = match (error, expected) {
+                (Some(a), Some(b)) => (a - b).abs() <= 1e-4 * b,
+                (a, b) => a.is_none() && b.is_none(),
+            };
+            assert!(same, "{name} {error:?} {expected:?}");
+        }
+    }
 }

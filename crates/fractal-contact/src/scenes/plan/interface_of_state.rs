@@ -1,13 +1,18 @@
 //! Leakage, percolation and the stress below the surface of a state, as far as the scene requests them.
 
-use crate::scenes::read::{Numerics, RequestedLeakage, RequestedStress, SceneFile};
-use bem3d::PeriodicKernel;
+use crate::scenes::read::{Numerics, RequestedFilm, RequestedLeakage, RequestedStress, SceneFile};
+use bem3d::{Film, PeriodicKernel, film_conductance_until};
 use contact_model::{
-    Boundary, ContactState, Effect, Error, Field, Fields, InterfaceState, LargestStress, LeakageState,
-    NormalLoad, PathState, Result, Stop,
+    Boundary, ContactState, Effect, Error, Field, Fields, FilmState, InterfaceState, LargestStress,
+    LeakageState, NormalLoad, PathState, Result, Stop,
 };
 use interface::stress::{PeriodicLoad, StressedBody, SubsurfaceStress, SurfaceLoad, largest_von_mises};
-use interface::{FlowAxis, FlowBounds, FlowOptions, gap_error, leakage_until, open_gap, percolation};
+use interface::{
+    FlowAxis, FlowBounds, FlowOptions, conductance_until, gap_error, leakage_until, open_gap, percolation,
+};
+
+/// Relative width of the bounds of the conductance with a film.
+const FILM_TOLERANCE: f64 = 1e-8;
 
 /// Relative width of the bounds of flows whose difference is an error.
 const ERROR_TOLERANCE: f64 = 1e-6;
@@ -43,6 +48,11 @@ pub(crate) fn with_interface(
         leakage: flow.as_ref().map(|flow| flow.numbers),
         percolation: of_paths.map(|gap| paths(gap, boundary)).transpose()?,
         stress: stressed.as_ref().map(|(largest, _)| *largest),
+        film: requested
+            .film
+            .zip(gap.as_ref())
+            .map(|(of, gap)| film_of(scene, numerics, (gap, of), stop))
+            .transpose()?,
         gap_error,
     };
     let mut fields = state.fields.take().unwrap_or_default();
@@ -117,6 +127,42 @@ impl Flow {
         let flux = found.flow.flux.map(|flux| scaled(flux, pressure_drop / (12.0 * viscosity)));
         Ok(Self { numbers, pressure, flux })
     }
+}
+
+/// Conduction through the contact and a film in the gap, and along the film.
+fn film_of(
+    scene: &SceneFile,
+    numerics: &Numerics,
+    (gap, of): (&Field, RequestedFilm),
+    stop: Stop<'_>,
+) -> Result<FilmState> {
+    let boundary = scene.effects.boundary;
+    let Some(bodies) = scene.requested.outputs.conductance.resistivity()? else {
+        return Err(Error::unsupported(numerics.name(), "a film without the conductance of the bodies"));
+    };
+    let resistivity = of.material.resistivity();
+    let film = Film { resistivity, bodies };
+    let found = film_conductance_until(gap, film, boundary, FILM_TOLERANCE, stop)?;
+    let area = scene.surface.size().area();
+    let per = if boundary == Boundary::Periodic { area } else { 1.0 };
+    let along = of.along.map(|axis| -> Result<(f64, f64)> {
+        let mut sheet = gap.clone();
+        for conductivity in sheet.values_mut() {
+            // Nothing conducts at an undefined point, whose gap is infinite.
+            *conductivity = if conductivity.is_finite() { *conductivity / resistivity } else { 0.0 };
+        }
+        let options = FlowOptions { continuum: false, ..FlowOptions::default() };
+        let FlowBounds { lower, upper } = conductance_until(&sheet, axis, boundary, options, stop)?.network;
+        Ok(middle_and_error(lower, upper))
+    });
+    let (through, error) = middle_and_error(found.lower, found.upper);
+    Ok(FilmState { through: through / per, error, along: along.transpose()? })
+}
+
+/// The middle of two bounds, and half of their distance over it: 0 where nothing conducts.
+fn middle_and_error(lower: f64, upper: f64) -> (f64, f64) {
+    let middle = 0.5 * (lower + upper);
+    (middle, if middle > 0.0 { 0.5 * (upper - lower) / middle } else { 0.0 })
 }
 
 fn paths(gap: &Field, boundary: Boundary) -> Result<[PathState; 2]> {

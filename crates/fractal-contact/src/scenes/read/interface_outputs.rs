@@ -15,6 +15,36 @@ pub struct RequestedInterface {
     pub percolation: bool,
     /// The largest stress below the surface.
     pub stress_below: Option<RequestedStress>,
+    /// A film in the gap that conducts.
+    pub film: Option<RequestedFilm>,
+}
+
+/// A film that fills the gap and conducts as the bodies do.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RequestedFilm {
+    /// How well it conducts.
+    pub material: FilmMaterial,
+    /// The axis along which it conducts between opposite edges, where that is requested too.
+    pub along: Option<FlowAxis>,
+}
+
+/// How well a film conducts.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FilmMaterial {
+    /// Its electrical resistivity.
+    Resistivity(f64),
+    /// Its thermal conductivity.
+    Conductivity(f64),
+}
+
+impl FilmMaterial {
+    /// Its resistivity, electrical or thermal.
+    pub fn resistivity(self) -> f64 {
+        match self {
+            Self::Resistivity(resistivity) => resistivity,
+            Self::Conductivity(conductivity) => 1.0 / conductivity,
+        }
+    }
 }
 
 /// The fluid whose flow is computed.
@@ -46,7 +76,9 @@ impl RequestedInterface {
             InterfaceOutput::Leakage => self.leakage.is_some(),
             InterfaceOutput::Percolation => self.percolation,
             InterfaceOutput::StressBelow => self.stress_below.is_some(),
-            InterfaceOutput::Gap => self.needs_gap(),
+            InterfaceOutput::Gap => self.leakage.is_some() || self.percolation,
+            InterfaceOutput::Film => self.film.is_some(),
+            InterfaceOutput::FilmAlong => self.film.is_some_and(|film| film.along.is_some()),
             InterfaceOutput::YieldStress => {
                 self.stress_below.as_ref().is_some_and(|stress| stress.yield_stress.is_some())
             }
@@ -56,7 +88,7 @@ impl RequestedInterface {
 
     /// Whether it needs the gap of each cell.
     pub(crate) fn needs_gap(&self) -> bool {
-        self.leakage.is_some() || self.percolation
+        self.leakage.is_some() || self.percolation || self.film.is_some()
     }
 }
 
@@ -95,6 +127,33 @@ pub(crate) fn read_leakage(entry: &Entry<'_>, system: System) -> ReadResult<Requ
     let along = table.require("along", "\"x\"")?.choice(&AXES)?;
     table.finish()?;
     Ok(RequestedLeakage { viscosity, pressure_drop, along })
+}
+
+pub(crate) fn print_film(film: &RequestedFilm, system: System) -> String {
+    let RequestedFilm { material, along } = *film;
+    let material = match material {
+        FilmMaterial::Resistivity(value) => {
+            format!("resistivity = {}", printed::quantity(value, Dimension::RESISTIVITY, system))
+        }
+        FilmMaterial::Conductivity(value) => {
+            format!("conductivity = {}", printed::quantity(value, Dimension::THERMAL_CONDUCTIVITY, system))
+        }
+    };
+    let along = along.map_or_else(String::new, |along| format!(", along = {}", word_of(&AXES, along)));
+    format!("{{ {material}{along} }}")
+}
+
+pub(crate) fn read_film(entry: &Entry<'_>, system: System) -> ReadResult<RequestedFilm> {
+    let table = entry.table()?;
+    let material = if let Some(heat) = table.find("conductivity") {
+        FilmMaterial::Conductivity(heat.positive(Dimension::THERMAL_CONDUCTIVITY, system)?)
+    } else {
+        let electrical = table.require("resistivity", "\"0.2 Ohm m\"")?;
+        FilmMaterial::Resistivity(electrical.positive(Dimension::RESISTIVITY, system)?)
+    };
+    let along = table.find("along").map(|along| along.choice(&AXES)).transpose()?;
+    table.finish()?;
+    Ok(RequestedFilm { material, along })
 }
 
 pub(crate) fn read_stress(entry: &Entry<'_>, system: System) -> ReadResult<RequestedStress> {

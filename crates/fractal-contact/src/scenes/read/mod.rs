@@ -36,7 +36,9 @@ pub(crate) use distributed::{Bin, Distributed};
 pub(crate) use effects::{EFFECT_KEYS, EffectLine, effect_lines, read_effects};
 pub(crate) use entries::{Entries, Entry, LengthOrPair, ReadResult, System, nearest, suggestion};
 pub(crate) use error::{Error, Result};
-pub(crate) use interface_outputs::{RequestedInterface, RequestedLeakage, RequestedStress};
+pub(crate) use interface_outputs::{
+    FilmMaterial, RequestedFilm, RequestedInterface, RequestedLeakage, RequestedStress,
+};
 pub(crate) use load_kind::PrescribedLoad;
 pub(crate) use loads::{LoadList, LoadRequest};
 pub(crate) use numerics::{MOST_CELLS, Numerics};

@@ -191,12 +191,20 @@ const TABLE: &[OtherWords] = &[
         "random surfaces have `seed = 1` and `surfaces = 20` in [sampling]",
         "",
     ),
-    nothing(
-        &["leakage", "leak", "flow", "percolation", "permeability", "seal"],
-        "no leakage is computed: `gap = [\"npy\"]` in [outputs] writes the gap of every cell, from which a program for flow takes it",
+    key(
+        ("outputs", "leakage"),
+        &["leakage", "leak", "flow", "permeability", "seal"],
+        "the leakage is requested by `leakage = { viscosity = \"1 mPa s\", pressure_drop = \"1 bar\", along = \"x\" }` in [outputs]",
+        "the leakage is requested by `leakage` in [outputs] of a scene: `fractal-contact new seal.toml --from seal` writes one",
+    ),
+    key(
+        ("outputs", "percolation"),
+        &["percolation", "percolates", "threshold", "constriction"],
+        "paths through the gap, and their narrowest place, are requested by `percolation = true` in [outputs]",
+        "paths through the gap are requested by `percolation = true` in [outputs] of a scene",
     ),
     nothing(
-        &["lubrication", "lubricant", "oil", "fluid", "viscosity_of_oil", "film_thickness", "film"],
+        &["lubrication", "lubricant", "oil", "fluid", "viscosity_of_oil", "film_thickness"],
         "no lubricant is computed, contacts are dry: `gap = [\"npy\"]` in [outputs] writes the gap of the dry contact",
     ),
     nothing(
@@ -281,7 +289,7 @@ mod tests {
     fn other_words_are_told() {
         assert_eq!(meant("scene.bodies", "E").unwrap(), "write `young` for `E`");
         assert!(meant("scene", "young").unwrap().contains("`bodies = [{ young = "));
-        assert!(meant("outputs", "leakage").unwrap().starts_with("no leakage is computed"));
+        assert!(meant("outputs", "leak").unwrap().starts_with("the leakage is requested by `leakage = {"));
         assert!(meant("scene", "nonsense").is_none());
         assert!(meant_by_flag("--load").unwrap().contains("`--force '1 N'`"));
     }

@@ -1,6 +1,8 @@
 //! `[outputs]`: only requested outputs are computed and stored.
 
-use crate::scenes::read::interface_outputs::{print_leakage, print_stress, read_leakage, read_stress};
+use crate::scenes::read::interface_outputs::{
+    print_film, print_leakage, print_stress, read_film, read_leakage, read_stress,
+};
 use crate::scenes::read::key::{Context, Key, KeyTable};
 use crate::scenes::read::{Distributed, Entries, Entry, ReadResult, RequestedInterface, System, printed};
 use contact_model::{Conductance, FIELDS, FieldQuantity, Output, Outputs};
@@ -190,6 +192,7 @@ impl RequestedOutputs {
             ("grid_error", self.grid_error),
             ("leakage", self.interface.leakage.is_some()),
             ("percolation", self.interface.percolation),
+            ("film", self.interface.film.is_some()),
             ("stress_below", self.interface.stress_below.is_some()),
             ("law", self.law),
             ("curves", self.curves),
@@ -315,6 +318,17 @@ pub(crate) static OUTPUT_KEYS: KeyTable<RequestedOutputs> = KeyTable {
             default: "`false`",
             read: |requested, entry, _| entry.flag().map(|asked| requested.interface.percolation = asked),
             print: |requested, _| requested.interface.percolation.then(|| "true".to_owned()),
+        },
+        Key {
+            name: "film",
+            takes: "table",
+            about: "a film that fills the gap and conducts, beside the `conductance` of the contact: `{ resistivity = \"0.2 Ohm m\" }`, or `{ conductivity = \"0.6 W/(m K)\" }` of heat; with `along = \"x\"` its conductance between opposite edges too",
+            default: "none",
+            read: |requested, entry, context| {
+                requested.interface.film = Some(read_film(entry, context.system)?);
+                Ok(())
+            },
+            print: |requested, system| requested.interface.film.map(|of| print_film(&of, system)),
         },
         Key {
             name: "stress_below",

@@ -8,12 +8,13 @@ use crate::scenes::read::path::pieces;
 use crate::scenes::read::question::{AskedSampling, Material, read_question};
 use crate::scenes::read::scene_surface::{FoundSurface, find_surface};
 use crate::scenes::read::{
-    Diagnostic, Entries, Error, LoadRequest, MOST_CELLS, Numerics, Places, PrescribedLoad, Question,
-    ReadResult, Registry, RequestedAccuracy, RequestedOutputs, Result, SceneSurface, System, nearest, short,
+    Diagnostic, Entries, Error, FilmMaterial, LoadRequest, MOST_CELLS, Numerics, Places, PrescribedLoad,
+    Question, ReadResult, Registry, RequestedAccuracy, RequestedOutputs, Result, SceneSurface, System,
+    nearest, short,
 };
 use contact_model::{
-    Adhesion, Body, Boundary, Cells, Directions, Effect, Effects, Friction, Hardness, InterfaceOutput,
-    NormalLoad, Output, Pair, Paths, Rheology, Scene, Size, Surface,
+    Adhesion, Body, Boundary, Cells, Conductance, Directions, Effect, Effects, Friction, Hardness,
+    InterfaceOutput, NormalLoad, Output, Pair, Paths, Rheology, Scene, Size, Surface,
 };
 use std::io::Read as _;
 use std::ops::Range;
@@ -760,6 +761,8 @@ fn check_coupling(scene: &SceneFile, places: &Places) -> ReadResult<()> {
 
 const LEAKAGE_EXAMPLE: &str =
     "add `leakage = { viscosity = \"1 mPa s\", pressure_drop = \"1 bar\", along = \"x\" }` to [outputs]";
+const FILM_EXAMPLE: &str = "add `conductance = { kind = \"electrical\", resistivities = [\"1e-7 Ohm m\", \"1e-7 Ohm m\"] }` to [outputs]";
+const FILM_EXAMPLE_OF_HEAT: &str = "add `conductance = { kind = \"thermal\", conductivities = [\"50 W/(m K)\", \"50 W/(m K)\"] }` to [outputs]";
 const STRESS_EXAMPLE: &str = "add `stress_below = { depths = [\"1 um\", \"2 um\", \"5 um\"] }` to [outputs]";
 
 /// Checks that leakage, paths and the stress below the surface can be computed in the scene.
@@ -802,6 +805,22 @@ fn check_interface(scene: &SceneFile, places: &Places) -> ReadResult<()> {
         if matches!(scene.request, LoadRequest::Path(_)) {
             let message = "the law of an interface along a path: it would depend on the path".to_owned();
             return refused("law", message, "prescribe `mean_pressure` or `mean_gap` in a list");
+        }
+    }
+    if let Some(film) = requested.film {
+        let (key, help) = match film.material {
+            FilmMaterial::Resistivity(_) => ("resistivity", FILM_EXAMPLE),
+            FilmMaterial::Conductivity(_) => ("conductivity", FILM_EXAMPLE_OF_HEAT),
+        };
+        let has_bodies = matches!(
+            (film.material, outputs.outputs.conductance),
+            (FilmMaterial::Resistivity(_), Conductance::Electrical { .. })
+                | (FilmMaterial::Conductivity(_), Conductance::Thermal { .. })
+        );
+        if !has_bodies {
+            let message =
+                format!("a film with a {key} without the `conductance` of the same kind of both bodies");
+            return refused("film", message, help);
         }
     }
     let undefined = scene.surface.given_map().map_or(0, |map| map.undefined());

@@ -17,12 +17,12 @@ struct LawColumn {
     of: &'static str,
     /// Its column, and that of its error.
     names: [&'static str; 2],
-    /// Its unit; empty for that of the quantity per nominal area.
+    /// Its unit; empty for that of a conductance per nominal area.
     unit: &'static str,
     meaning: &'static str,
 }
 
-const COLUMNS: [LawColumn; 5] = [
+const COLUMNS: [LawColumn; 6] = [
     LawColumn {
         of: "mean_gap",
         names: ["mean_gap", "mean_gap_error"],
@@ -48,6 +48,12 @@ const COLUMNS: [LawColumn; 5] = [
         meaning: "conductance through the contact, per nominal area",
     },
     LawColumn {
+        of: "film_conductance_per_area",
+        names: ["film_conductance_per_area", "film_conductance_per_area_error"],
+        unit: "",
+        meaning: "conductance through the contact and the film in the gap, per nominal area",
+    },
+    LawColumn {
         of: "flow_factor",
         names: ["flow_factor", "flow_factor_error"],
         unit: "1",
@@ -63,12 +69,10 @@ fn mean_with_error(records: &[&StateRecord], of: &StateQuantity, scale: f64) -> 
     };
     let values = records.iter().map(number).collect::<Option<Vec<f64>>>()?;
     let (mean, deviation) = mean_and_deviation(&values)?;
-    // The flow factor is the leakage over a number of the gap.
-    let with_error = if of.name == "flow_factor" { StateQuantity::named("leakage")? } else { of };
     let errors: Vec<f64> = records
         .iter()
         .zip(&values)
-        .filter_map(|(record, value)| Some(value.abs() * relative_error(record, with_error)?))
+        .filter_map(|(record, value)| Some(value.abs() * relative_error(record, of)?))
         .collect();
     let of_cells = mean_and_deviation(&errors).map(|(mean, _)| mean);
     let of_mean = deviation.map(|deviation| half_width_of_mean(deviation, values.len()));
@@ -93,19 +97,15 @@ pub(crate) fn table(states: &StateTable<'_>) -> Result<Table> {
     for (column, quantity) in &asked_columns {
         let unit = match (column.unit, quantity.unit.si(&scene.requested.outputs)) {
             ("", "S") => "S/m^2",
-            ("", _) => "W/(m^2 K)",
+            ("", "W/K") => "W/(m^2 K)",
+            ("", per_area) => per_area,
             (unit, _) => unit,
         };
         let unit = scene.system.unit(unit);
         let [name, error] = column.names;
         all.push(Column { name, unit, meaning: column.meaning });
-        let meaning = if column.of == "flow_factor" {
-            "its error by the solver, and half of the 95 % interval of the mean over several surfaces; that of the \
-             grid is not estimated"
-        } else {
-            "its error: that of the grid and of the solver, as far as they are known, and half of the 95 % interval \
-             of the mean over several surfaces"
-        };
+        let meaning = "its error: that of the grid and of the solver, as far as they are known, and half of the 95 % interval of \
+                       the mean over several surfaces";
         all.push(Column { name: error, unit, meaning });
     }
     let mut table = Table::new(format!("{}: law of the interface", states.title), all);

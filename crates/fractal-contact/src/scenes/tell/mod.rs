@@ -32,7 +32,7 @@ pub(crate) use surface_report::SurfaceReport;
 #[cfg(test)]
 mod tests {
     use super::{columns, ensemble, pictures, report, summary};
-    use crate::scenes::read::{RequestedLeakage, RequestedStress};
+    use crate::scenes::read::{FilmMaterial, RequestedFilm, RequestedLeakage, RequestedStress};
     use crate::scenes::{LoadList, LoadRequest, Numerics, PrescribedLoad, SceneFile, SceneSurface};
     use contact_model::quantities::{AskedBy, Average, QUANTITIES, Role};
     use contact_model::{
@@ -92,6 +92,11 @@ mod tests {
                 let leakage = RequestedLeakage { viscosity: 1.0, pressure_drop: 1.0, along };
                 scene.requested.interface.leakage = Some(leakage);
             }
+            AskedBy::Interface(InterfaceOutput::Film | InterfaceOutput::FilmAlong) => {
+                let along = Some(FlowAxis::X);
+                scene.requested.interface.film =
+                    Some(RequestedFilm { material: FilmMaterial::Resistivity(1.0), along });
+            }
             AskedBy::Interface(InterfaceOutput::Percolation | InterfaceOutput::Gap) => {
                 scene.requested.interface.percolation = true;
             }
@@ -108,6 +113,7 @@ mod tests {
                 scene.request = LoadRequest::Path(vec![Step::new(0.0, Load::force(1.0)).into(); 2]);
             }
             AskedBy::All(each) => each.iter().for_each(|asked| ask(scene, *asked)),
+            AskedBy::PeriodicBoundary => effects.boundary = Boundary::Periodic,
             AskedBy::WholeLayer => {
                 let layer = Layer { thickness: 1.0, young: 1.0, poisson: 0.3, base: LayerBase::Rigid };
                 (effects.layer, effects.boundary) = (Some(layer), Boundary::Periodic);

@@ -18,7 +18,7 @@ pub(crate) const OF_SOLVER: &str = "The number behind ± is the estimated error 
                                    contain the error of the grid, which `grid_error = true` in [outputs] estimates for loads that do not form a path.";
 
 /// Quantities whose relative error on the cells that were solved is another quantity.
-const SOLVER_ERRORS: [(&str, &str); 17] = [
+const SOLVER_ERRORS: [(&str, &str); 22] = [
     ("force", "force_error"),
     ("stiffness", "stiffness_error"),
     ("tangential_stiffness", "tangential_stiffness_error"),
@@ -36,6 +36,12 @@ const SOLVER_ERRORS: [(&str, &str); 17] = [
     ("contact_fraction", "area_time_error"),
     ("leakage", "leakage_error"),
     ("leakage", "leakage_contact_error"),
+    // A number of the gap is all that lies between them.
+    ("flow_factor", "leakage_error"),
+    ("flow_factor", "leakage_contact_error"),
+    ("film_conductance", "film_conductance_error"),
+    ("film_conductance_per_area", "film_conductance_error"),
+    ("film_conductance_along", "film_conductance_along_error"),
 ];
 
 /// The estimated relative error of a quantity of a state: that of the grid and that of the solver, as far as

@@ -3,7 +3,8 @@
 use super::*;
 use crate::scenes::read::loads::LoadList;
 use crate::scenes::read::{
-    Distributed, FieldFormat, PrescribedLoad, RequestedInterface, RequestedLeakage, RequestedStress,
+    Distributed, FieldFormat, FilmMaterial, PrescribedLoad, RequestedFilm, RequestedInterface,
+    RequestedLeakage, RequestedStress,
 };
 use contact_model::{
     Adhesion, AdhesionLaw, Boundary, Conductance, Coupling, Friction, FrictionLaw, Hardness, Layer,
@@ -312,11 +313,18 @@ fn interface() -> BoxedStrategy<RequestedInterface> {
     let body = of(select(vec![LoadedBody::First, LoadedBody::Second]));
     let stress = (vec(positive(), 1..4), of(positive()), body)
         .prop_map(|(depths, yield_stress, body)| RequestedStress { depths, yield_stress, body });
-    (of(leakage), any::<bool>(), of(stress))
-        .prop_map(|(leakage, percolation, stress_below)| RequestedInterface {
+    let material = prop_oneof![
+        positive().prop_map(FilmMaterial::Resistivity),
+        positive().prop_map(FilmMaterial::Conductivity)
+    ];
+    let film = (material, of(select(vec![FlowAxis::X, FlowAxis::Y])))
+        .prop_map(|(material, along)| RequestedFilm { material, along });
+    (of(leakage), any::<bool>(), of(stress), of(film))
+        .prop_map(|(leakage, percolation, stress_below, film)| RequestedInterface {
             leakage,
             percolation,
             stress_below,
+            film,
         })
         .boxed()
 }
