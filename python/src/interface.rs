@@ -5,6 +5,7 @@ use crate::memory;
 use crate::numbers::RealNumber;
 use crate::pool;
 use crate::state;
+use fractal_contact::bem3d::{Film, film_conductance_until};
 use fractal_contact::interface::stress::{self, StressedBody, SubsurfaceStress, SurfaceLoad};
 use fractal_contact::interface::{self, FlowAxis, FlowBounds, FlowOptions, Leakage, SheetFlow};
 use fractal_contact::runs::check_memory;
@@ -20,6 +21,8 @@ const PATHS: f64 = 20.0;
 /// Maps of transforms and influence functions below a map that ends, and below one that repeats itself, of a pressure
 /// and with tractions.
 const STRESS_MAPS: [[f64; 2]; 2] = [[30.0, 60.0], [14.0, 26.0]];
+/// Maps of the conduction through a film: vectors of conjugate gradients, tables and transforms of twice the sides.
+const FILM_MAPS: f64 = 40.0;
 /// Stresses of which one task finds the equivalent stress. Between two tasks Ctrl-C is heard.
 const CHUNK: usize = 1 << 16;
 
@@ -106,6 +109,30 @@ pub fn leakage<'py>(
     dict.set_item("reached", PyArray1::from_vec(py, reached).reshape([cells.rows, cells.columns])?)?;
     dict.set_item("flux", state::array(py, flux.into())?)?;
     dict.set_item("iterations", iterations)?;
+    Ok(dict)
+}
+
+/// Conduction from one body to the other, through the contact and a film in the gap.
+#[pyfunction]
+pub fn film_conductance<'py>(
+    py: Python<'py>,
+    gap: MapArray<'py>,
+    cell: (f64, f64),
+    resistivities: (RealNumber, RealNumber),
+    repeats: [bool; 2],
+    tolerance: RealNumber,
+) -> PyResult<Bound<'py, PyDict>> {
+    let cells = cells(&gap);
+    memory::check_grid(py, "the film of a map", cells, FILM_MAPS * cells.map_bytes())?;
+    let gap = field(py, &gap, cell)?;
+    let film = Film { resistivity: resistivities.0.0, bodies: resistivities.1.0 };
+    let found =
+        run(py, move |stop| film_conductance_until(&gap, film, boundary(repeats), tolerance.0, stop))?;
+    let dict = PyDict::new(py);
+    dict.set_item("lower", found.lower)?;
+    dict.set_item("upper", found.upper)?;
+    dict.set_item("current_density", state::array(py, vec![found.current_density])?)?;
+    dict.set_item("iterations", found.steps)?;
     Ok(dict)
 }
 

@@ -50,7 +50,8 @@ mod _core {
     use crate::height_map::PyHeightMap;
     #[pymodule_export]
     use crate::interface::{
-        flow_rate, largest_von_mises, leakage, percolation, stress_at_depths, stress_at_points, von_mises,
+        film_conductance, flow_rate, largest_von_mises, leakage, percolation, stress_at_depths,
+        stress_at_points, von_mises,
     };
     #[pymodule_export]
     use crate::io::{channels, read_surface, si, write_surface};

@@ -658,15 +658,52 @@ except MemoryError as error:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
+
+
+def test_a_film_between_the_contact_alone_and_more():
+    gap = np.array([[0.0, 0.0, 0.02], [0.01, 0.0, 0.03], [0.05, 0.02, np.inf]])
+    contact = fc.film_conductance(gap, 0.5, film=1e12, bodies=2.0)
+    before = contact.upper
+    for film in (100.0, 1.0, 0.01):
+        found = fc.film_conductance(gap, 0.5, film=film, bodies=2.0)
+        assert before < found.lower <= found.upper <= found.lower * (1 + 1e-8)
+        np.testing.assert_allclose(found.current_density.sum() * 0.25, found.lower, rtol=1e-6)
+        assert found.current_density[2, 2] == 0.0
+        assert not found.current_density.flags.writeable
+        before = found.upper
+    # The same gap turned by a right angle, with cells of other sides.
+    found, turned = (
+        fc.film_conductance(g, cell, film=3.0, bodies=2.0) for g, cell in ((gap, (0.5, 0.7)), (gap.T, (0.7, 0.5)))
+    )
+    assert found.lower == pytest.approx(turned.lower, rel=1e-8)
+    assert found == fc.film_conductance(gap, (0.5, 0.7), film=3.0, bodies=2.0)
+    # One cell alone conducts as a square of uniform current, whose potential at its centre is 4 asinh(1)/(2 pi).
+    alone = fc.film_conductance([[0.0]], 1.0, film=1.0, bodies=1.0)
+    assert alone.lower == pytest.approx(2 * np.pi / (4 * np.arcsinh(1.0)), rel=1e-9)
+
+
+def test_films_that_make_no_sense():
+    for wrong in ({"film": 0.0}, {"film": np.nan}, {"bodies": -1.0}):
+        with pytest.raises(fc.DomainError):
+            fc.film_conductance([[1.0]], **{"film": 1.0, "bodies": 1.0, **wrong})
+    with pytest.raises(fc.DomainError, match="gap"):
+        fc.film_conductance([[-1.0]], film=1.0, bodies=1.0)
+    with pytest.raises(fc.DomainError, match="full contact"):
+        fc.film_conductance(np.zeros((4, 4)), film=1.0, bodies=1.0, boundary="periodic")
+    with pytest.raises(fc.Unsupported):
+        fc.film_conductance(np.ones((4, 4)), film=1.0, bodies=1.0, boundary={"x": "periodic", "y": "free"})
+
+
 @pytest.mark.parametrize(
     "work",
     [
         lambda big: fc.leakage(big),
+        lambda big: fc.film_conductance(big, film=1e-3, bodies=1.0, tolerance=1e-13),
         lambda big: fc.stress_below(big, cell=1.0, depths=range(1, 400), poisson=0.3),
         lambda big: fc.stress_below(big, cell=1.0, points=np.ones((10_000, 3)), poisson=0.3),
         lambda big: fc.largest_von_mises(big, cell=1.0, depths=range(1, 400), poisson=0.3),
     ],
-    ids=["leakage", "depths", "points", "largest"],
+    ids=["leakage", "film", "depths", "points", "largest"],
 )
 def test_ctrl_c(work):
     big = np.random.default_rng(1).lognormal(sigma=2.0, size=(1000, 1000))

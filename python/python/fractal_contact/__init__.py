@@ -46,9 +46,11 @@ from ._files import ReadSurface, SceneOutcome, channels, read_surface, run_scene
 from ._formulas import *  # noqa: F403
 from ._inputs import Body, Scene, Surface
 from ._interface import (
+    FilmConductance,
     LargestVonMises,
     Leakage,
     Percolation,
+    film_conductance,
     largest_von_mises,
     leakage,
     percolation,
@@ -111,6 +113,7 @@ __all__ = [
     "channels",
     "combinations",
     "ensemble",
+    "film_conductance",
     "follow",
     "largest_von_mises",
     "leakage",

@@ -42,6 +42,11 @@ class Columns:
         return self._column("mean_gap")
 
     @property
+    def whole_approach(self) -> NDArray[np.float64]:
+        """numpy.ndarray: approach with the whole layer in m for SI units, shape (states,); NaN where there is none."""
+        return self._column("whole_approach")
+
+    @property
     def contact_radius(self) -> NDArray[np.float64]:
         """numpy.ndarray: contact radius in m for SI units, shape (states,); NaN where there is none."""
         return self._column("contact_radius")
@@ -187,6 +192,12 @@ class Columns:
         return self._column("stiffness")
 
     @property
+    def whole_stiffness(self) -> NDArray[np.float64]:
+        """numpy.ndarray: stiffness with the whole layer in N/m for SI units, shape (states,); NaN where there is
+        none."""
+        return self._column("whole_stiffness")
+
+    @property
     def stiffness_fixed_area(self) -> NDArray[np.float64]:
         """numpy.ndarray: stiffness at fixed contact area in N/m for SI units, shape (states,); NaN where there is
         none."""
@@ -211,6 +222,23 @@ class Columns:
     def conductance(self) -> NDArray[np.float64]:
         """numpy.ndarray: conductance in S, W/K for SI units, shape (states,); NaN where there is none."""
         return self._column("conductance")
+
+    @property
+    def film_conductance(self) -> NDArray[np.float64]:
+        """numpy.ndarray: conductance with the film in S, W/K for SI units, shape (states,); NaN where there is none."""
+        return self._column("film_conductance")
+
+    @property
+    def film_conductance_per_area(self) -> NDArray[np.float64]:
+        """numpy.ndarray: conductance with the film, per area in S/m^2, W/(m^2 K) for SI units, shape (states,); NaN
+        where there is none."""
+        return self._column("film_conductance_per_area")
+
+    @property
+    def film_conductance_along(self) -> NDArray[np.float64]:
+        """numpy.ndarray: conductance of the film along the interface in S, W/K for SI units, shape (states,); NaN where
+        there is none."""
+        return self._column("film_conductance_along")
 
     @property
     def leakage(self) -> NDArray[np.float64]:

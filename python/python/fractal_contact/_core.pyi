@@ -32,6 +32,7 @@ __all__ = [
     "effect_keys",
     "ensemble",
     "fields",
+    "film_conductance",
     "fit_spectrum",
     "flow_rate",
     "height_difference",
@@ -400,6 +401,12 @@ class ContactState:
         half-space; without undefined points the mean of the gap field; with them it may be negative [m].
         """
     @property
+    def whole_approach(self) -> float | None:
+        """float or None: approach with the whole layer, of the rigid body to the base from first touch: the fall of
+        the mean gap and the compression of the whole layer under the mean pressure; empty under an elastic body,
+        whose half-space has no approach, and of a viscoelastic layer [m].
+        """
+    @property
     def contact_radius(self) -> float | None:
         """float or None: contact radius, of a round contact; of an equivalent profile that of the round contact of
         the same stiffness, k/(2 E*) [m].
@@ -474,7 +481,8 @@ class ContactState:
     @property
     def work(self) -> float | None:
         """float or None: work of the load, work of the normal load since the first step: what the body holds and
-        what has been dissipated in it [J].
+        what has been dissipated in it; periodic by the fall of the mean gap, without the compression of a whole
+        layer [J].
         """
     @property
     def branch(self) -> str | None:
@@ -509,6 +517,11 @@ class ContactState:
         adhesive contact move, saturated cells flow; with full coupling the tangential load is held [N/m].
         """
     @property
+    def whole_stiffness(self) -> float | None:
+        """float or None: stiffness with the whole layer, dF/dd of the approach with the whole layer along the branch
+        of states; of an elastic layer under a rigid body [N/m].
+        """
+    @property
     def stiffness_bar(self) -> float | None:
         """float or None: k/(1.1419 E* L) of this stiffness, L = sqrt(Lx Ly)."""
     @property
@@ -531,6 +544,23 @@ class ContactState:
     def conductance(self) -> float | None:
         """float or None: conductance, 2 k/(E* (rho_1 + rho_2)) with the stiffness at fixed contact area (Barber) [S,
         W/K].
+        """
+    @property
+    def film_conductance(self) -> float | None:
+        """float or None: conductance with the film, current through the sample per potential difference far away:
+        through the contact and the film in the gap, which share the resistance of the bodies [S, W/K].
+        """
+    @property
+    def film_conductance_per_area(self) -> float | None:
+        """float or None: conductance with the film, per area, conductance of the interface per nominal area, through
+        the contact and the film in the gap; the resistance of the bodies above and below adds to its own [S/m^2,
+        W/(m^2 K)].
+        """
+    @property
+    def film_conductance_along(self) -> float | None:
+        """float or None: conductance of the film along the interface, current in the film between opposite edges of
+        the map per potential difference, a cell conducting as its gap; the contact and the bodies carry none of it
+        [S, W/K].
         """
     @property
     def leakage(self) -> float | None:
@@ -714,6 +744,16 @@ class ContactState:
     def leakage_error(self) -> float | None:
         """float or None: error of the leakage, proven relative error of the flow through the network of the cells:
         half of the distance between its bounds, over the flow.
+        """
+    @property
+    def film_conductance_error(self) -> float | None:
+        """float or None: error of the conductance with the film, proven relative error of the conductance through
+        the contact and the film on these cells: half of the distance between its bounds, over the conductance.
+        """
+    @property
+    def film_conductance_along_error(self) -> float | None:
+        """float or None: error of the conductance along the film, proven relative error of the conductance through
+        the network of the cells: half of the distance between its bounds, over the conductance.
         """
     @property
     def leakage_contact_error(self) -> float | None:
@@ -1338,6 +1378,15 @@ def leakage(
     continuum: bool,
 ) -> dict[str, Any]:
     """Flow between opposite edges."""
+
+def film_conductance(
+    gap: NDArray[np.float64],
+    cell: tuple[float, float],
+    resistivities: tuple[float, float],
+    repeats: tuple[bool, bool],
+    tolerance: float,
+) -> dict[str, Any]:
+    """Conduction from one body to the other, through the contact and a film in the gap."""
 
 def flow_rate(lower: float, upper: float, pressure_drop: float, viscosity: float) -> tuple[float, float]:
     """The bounds of the flow of a fluid under a pressure drop, of those of the conductance."""

@@ -172,6 +172,98 @@ def leakage(
     return Leakage(**found)
 
 
+@dataclass(frozen=True, eq=False)
+class FilmConductance:
+    """Conduction from one body to the other, with bounds on both sides; `film_conductance` makes it.
+
+    The array is ``[row, column]`` and read-only. Two of them compare with ``==`` as wholes.
+
+    Parameters
+    ----------
+    lower, upper : float
+        Bounds of the current per potential difference on these cells: of the sample with free boundaries; with periodic
+        ones of the interface alone, whose resistance adds to that of the bodies above and below it.
+    current_density : numpy.ndarray
+        Current density in each cell for a potential difference of 1, shape (rows, columns).
+    iterations : int
+        Steps of conjugate gradients.
+    """
+
+    lower: float
+    upper: float
+    current_density: NDArray[np.float64] = field(repr=False)
+    iterations: int
+
+    def __eq__(self, other: object) -> bool:
+        return same_fields(self, other) if isinstance(other, FilmConductance) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash((self.lower, self.upper, self.current_density.shape))
+
+
+def film_conductance(
+    gap: ArrayLike | HeightMap,
+    cell: Cell | None = None,
+    *,
+    film: float,
+    bodies: float,
+    boundary: Boundary = "free",
+    tolerance: float = 1e-8,
+) -> FilmConductance:
+    """Conductance through the contact and a film that fills the gap around it.
+
+    Cells whose gap is 0 are in contact and pass a current without resistance; elsewhere it crosses a film of the
+    thickness of the gap. Both share the resistance of the bodies, which are half-spaces. For heat take thermal
+    resistivities, the inverse of conductivities. A solver leaves small gaps in contact: set them to 0 where the
+    pressure is positive.
+
+    Parameters
+    ----------
+    gap : array_like
+        The gap of each cell, >= 0, a length, shape (rows, columns), with columns along x; infinite where nothing
+        conducts. Dimensions with names are put into this order, as by `HeightMap`.
+    cell : float or (float, float), optional
+        Side of a square cell or sides (dx, dy), in the unit of the gap. By default the steps of the coordinates of an
+        array of xarray, the cell of a HeightMap, or squares of side 1.
+    film : float
+        Resistivity of the film, > 0.
+    bodies : float
+        Sum of the resistivities of both bodies, > 0, in the same unit.
+    boundary : {"free", "periodic"}
+        Whether the map ends, or repeats itself along both axes.
+    tolerance : float
+        Relative distance of the bounds at which the solver ends. Where it needs too many steps, they are farther apart.
+
+    Returns
+    -------
+    FilmConductance
+        The bounds and the current density.
+
+    Raises
+    ------
+    DomainError
+        For a gap that is negative or not a number, and a periodic map that touches everywhere.
+    Unsupported
+        For a map that repeats itself along one axis only.
+    OutOfMemory
+        For a map that does not fit in memory.
+
+    Examples
+    --------
+    A film of constant thickness has the resistance film * gap/area, and a periodic interface no other one:
+
+    >>> import fractal_contact as fc
+    >>> found = fc.film_conductance([[0.1, 0.1], [0.1, 0.1]], film=3.0, bodies=1.0, boundary="periodic")
+    >>> round(found.lower, 6)
+    13.333333
+    """
+    values = _arrays.field(gap, "gap", undefined=np.inf)
+    sides = _arrays.sides(cell, gap) or (1.0, 1.0)
+    resistivities = (number(film, "film"), number(bodies, "bodies"))
+    found = _core.film_conductance(values, sides, resistivities, _repeats(boundary), number(tolerance, "tolerance"))
+    return FilmConductance(**found)
+
+
 @dataclass(frozen=True)
 class Percolation:
     """What leads from one edge of an interface to the opposite one; `percolation` makes it.
