@@ -658,8 +658,6 @@ except MemoryError as error:
 
 
 @pytest.mark.skipif(os.name != "posix", reason="signals of POSIX")
-
-
 def test_a_film_between_the_contact_alone_and_more():
     gap = np.array([[0.0, 0.0, 0.02], [0.01, 0.0, 0.03], [0.05, 0.02, np.inf]])
     contact = fc.film_conductance(gap, 0.5, film=1e12, bodies=2.0)

@@ -85,6 +85,7 @@ __all__ = [
     "Effects",
     "Equivalent",
     "Error",
+    "FilmConductance",
     "Formula",
     "GreenwoodWilliamson",
     "HeightMap",

@@ -19,8 +19,8 @@ def parameters(heights: HeightMap, *, periodic: bool = False) -> dict[str, float
     """Parameters of ISO 25178-2, rms gradient and curvature, Nayak's parameter, the energy of full contact.
 
     Those of the standard are Sa, Sq, Ssk, Sku, Sp, Sv, Sz, Sdq, Sdr, Sk, Spk, Svk, Sal, Str, Std, Spd and Spc.
-    ``full_contact_energy`` is the elastic energy per area that presses a periodic map flat, over the contact modulus E*:
-    the sum of |q| |H(q)|^2/4.
+    ``full_contact_energy`` is the elastic energy per area that presses a periodic map flat, over the contact modulus
+    E*: the sum of |q| |H(q)|^2/4.
 
     Parameters
     ----------
