@@ -62,10 +62,12 @@ mod gradients;
 mod graph;
 mod multigrid;
 mod network;
+mod stream;
 mod tree;
 mod vectors;
 
 pub use bounds::FlowBounds;
+pub use stream::{StreamFunction, stream_function};
 
 use crate::axis::{FlowAxis, Layers, check_memory};
 use contact_model::{Boundary, Error, Field, Result, Stop, check_stop, never};

@@ -51,8 +51,8 @@ mod thresholds;
 pub use axis::FlowAxis;
 pub use gap::{gap_error, open_gap};
 pub use leakage::{
-    FlowBounds, FlowOptions, FlowRate, Leakage, SheetFlow, conductance, conductance_until, flow_memory,
-    leakage, leakage_until,
+    FlowBounds, FlowOptions, FlowRate, Leakage, SheetFlow, StreamFunction, conductance, conductance_until,
+    flow_memory, leakage, leakage_until, stream_function,
 };
 pub use percolation::{Constriction, Percolation, percolation};
 pub use thresholds::bracketed_force;

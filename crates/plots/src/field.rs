@@ -6,6 +6,7 @@ use crate::drawing::{Anchor, Drawing, LabelPlace, Paint, Rectangle, polygon, pol
 use crate::error::{Error, Result};
 use crate::frame::{AxisSide, Frame, TICK, TickStyle};
 use crate::inset;
+use crate::mark;
 use crate::pixels::{Pixels, raster, reduction};
 use crate::style::{INK, NEUTRAL};
 use crate::text::Fonts;
@@ -43,6 +44,10 @@ pub struct FieldPicture<'a> {
     pub contact: &'a [bool],
     /// Components along x and y of the vector whose magnitude the values are; arrows show its direction.
     pub arrows: Option<[&'a [f64]; 2]>,
+    /// Lines on the map, such as the paths of a flow, as points (x, y) in the unit of the sides.
+    pub lines: &'a [Vec<[f64; 2]>],
+    /// Points that are marked with a ring, likewise.
+    pub marks: &'a [[f64; 2]],
     /// Names of the classes that the values 0, 1, ... stand for: a legend with a colour for each class takes
     /// the place of the scale. Empty for measured values.
     pub classes: &'a [&'a str],
@@ -80,6 +85,8 @@ const ARROWS: f64 = 26.0;
 /// Length of an arrow and of its head, in distances between arrows.
 const ARROW: f64 = 0.85;
 const ARROW_HEAD: f64 = 0.28;
+/// Radius of the ring around a marked point.
+const RING: f64 = 11.0;
 /// Width of the line around the map; it lies outside of its pixels.
 const LINE: f64 = 1.2;
 /// Size of the line that says how a picture is reduced, and its room.
@@ -136,6 +143,7 @@ impl FieldPicture<'_> {
             drawing.label(fonts.fitted(&note, NOTE, w + RIGHT), at, NEUTRAL);
         }
         self.draw_arrows(&mut drawing, place);
+        self.draw_lines_and_marks(&mut drawing, place);
         let map = Frame { fonts: &fonts, place, style: TickStyle::OF_MAPS };
         self.draw_axes(&mut drawing, &map);
         if self.classes.is_empty() {
@@ -231,8 +239,16 @@ impl FieldPicture<'_> {
         let kept: Vec<usize> = kept.collect();
         let values: Vec<f64> = kept.iter().map(|cell| self.values[*cell]).collect();
         let contact: Vec<bool> = kept.iter().filter_map(|cell| self.contact.get(*cell).copied()).collect();
-        let enlarged =
-            FieldPicture { cells, size, values: &values, contact: &contact, arrows: None, ..self.clone() };
+        let enlarged = FieldPicture {
+            cells,
+            size,
+            values: &values,
+            contact: &contact,
+            arrows: None,
+            lines: &[],
+            marks: &[],
+            ..self.clone()
+        };
         let pixels = raster(cells, size, (INSET / PIXEL) as usize, SHORTEST);
         let [wide, high] = [pixels.columns, pixels.rows].map(|count| PIXEL * count as f64);
         let place = [left + w + RIGHT + BESIDE, top, wide, high];
@@ -266,6 +282,24 @@ impl FieldPicture<'_> {
             drawing.path(polygon(&corners), Paint::stroked(INK, 1.2), None);
             let at = (left + BAR + 9.0, y + 0.5 * BAR + 0.35 * TICK);
             drawing.label(map.fonts.typeset(words, TICK), LabelPlace::new(at, Anchor::Start), INK);
+        }
+    }
+
+    /// The lines and the rings around marked points, both seen on dark and on light colours.
+    fn draw_lines_and_marks(&self, drawing: &mut Drawing, frame: Rectangle) {
+        let [left, top, w, h] = frame;
+        let on_map = |[x, y]: &[f64; 2]| (left + w * (x / self.size.x), top + h * (1.0 - y / self.size.y));
+        for line in self.lines {
+            let points: Vec<(f64, f64)> = line.iter().map(on_map).collect();
+            for (color, width) in [(INK, 2.4), ("#ffffff", 1.2)] {
+                drawing.path(polyline(&points), Paint::stroked(color, width), Some(frame));
+            }
+        }
+        for point in self.marks {
+            for (color, width) in [(INK, 5.0), ("#ffffff", 2.4)] {
+                let ring = mark::circle(on_map(point).0, on_map(point).1, RING);
+                drawing.path(ring, Paint::stroked(color, width), Some(frame));
+            }
         }
     }
 
@@ -384,6 +418,8 @@ mod tests {
             range: None,
             contact,
             arrows: None,
+            lines: &[],
+            marks: &[],
             classes: &[],
         }
     }

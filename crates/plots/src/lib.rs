@@ -27,6 +27,7 @@
 mod axis;
 mod chart;
 mod colours;
+mod contour_lines;
 mod drawing;
 mod error;
 mod field;
@@ -45,6 +46,7 @@ mod text;
 pub use axis::{Axis, extent, linear, logarithmic};
 pub use chart::{Chart, Curve};
 pub use colours::{ColourScale, Palette, encode_viridis, viridis};
+pub use contour_lines::contour_lines;
 pub use error::{Error, Result};
 pub use field::FieldPicture;
 pub use legend::Legend;

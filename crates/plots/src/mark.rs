@@ -51,7 +51,7 @@ fn outline(shape: MarkShape, (x, y): (f64, f64), r: f64) -> Vec<Piece> {
 }
 
 /// A circle as four cubic pieces.
-fn circle(x: f64, y: f64, r: f64) -> Vec<Piece> {
+pub(crate) fn circle(x: f64, y: f64, r: f64) -> Vec<Piece> {
     // The usual handle: the radius is met to 3e-4.
     let h = 0.552_284_75 * r;
     vec![

@@ -42,7 +42,9 @@ pub(crate) use interface_outputs::{
 pub(crate) use load_kind::PrescribedLoad;
 pub(crate) use loads::{LoadList, LoadRequest};
 pub(crate) use numerics::{MOST_CELLS, Numerics};
-pub(crate) use outputs::{FieldFormat, HEIGHTS, RequestedOutputs, all_fields, read_outputs};
+pub(crate) use outputs::{
+    FLUID_PRESSURE, FLUX, FieldFormat, HEIGHTS, RequestedOutputs, all_fields, read_outputs,
+};
 pub(crate) use path::{PathPiece, cycles, step_to};
 pub(crate) use places::Places;
 pub(crate) use question::Question;

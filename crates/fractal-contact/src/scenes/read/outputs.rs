@@ -243,7 +243,7 @@ pub(crate) static OUTPUT_KEYS: KeyTable<RequestedOutputs> = KeyTable {
         Key {
             name: "flux",
             takes: "formats",
-            about: "flow per width of the fluid of `leakage` in each cell, along x and along y; pictures have arrows",
+            about: "flow per width of the fluid of `leakage` in each cell, along x and along y; pictures have lines, between any two of which the same amount flows, and a ring at the critical constriction of `percolation`",
             default: "none",
             read: |requested, entry, _| read_formats(entry).map(|formats| requested.flux = formats),
             print: |requested, _| print_formats(&requested.flux),

@@ -1,11 +1,12 @@
 //! Pictures of fields. They are drawn last, when the range over all loads is known, so that all pictures of a
 //! surface have one scale.
 
-use crate::scenes::read::{FieldFormat, HEIGHTS, Result, SceneFile, words};
+use crate::scenes::read::{FLUID_PRESSURE, FLUX, FieldFormat, HEIGHTS, Result, SceneFile, words};
 use crate::scenes::run::{FieldFile, FieldView, Folder, ModelResult, StateRecord, StoredFile};
 
-use contact_model::{Cells, FieldQuantity};
-use plots::{Chart, Curve, FieldPicture};
+use contact_model::{Cells, Field, FieldQuantity, PathState};
+use interface::{FlowAxis, StreamFunction, stream_function};
+use plots::{Chart, Curve, FieldPicture, contour_lines};
 use std::borrow::Cow;
 use std::path::Path;
 
@@ -16,6 +17,12 @@ const EXTENSION: &str = "f64";
 const VIEW: &str = "view";
 /// The field that says where there is contact.
 const PRESSURE: &str = "pressure";
+
+/// Lines of a flow, and marked points, (x, y) in the unit of the map.
+type FlowLines = (Vec<Vec<[f64; 2]>>, Vec<[f64; 2]>);
+
+/// Lines of a flow: the same amount passes between any two of them.
+const FLOW_LINES: usize = 12;
 
 /// Whether a file of this name is for the program's own use only.
 pub(crate) fn is_hidden(name: &str) -> bool {
@@ -123,6 +130,46 @@ impl FieldPictures<'_> {
         whole.then(|| values.chunks_exact(count).map(component).collect())
     }
 
+    /// Lines of the flow on a picture of the flux, and on it and on that of the pressure of the fluid the critical
+    /// constriction, where paths are requested.
+    fn of_flow(
+        &self,
+        field: &FieldQuantity,
+        state: &StateRecord,
+        components: &[Cow<'_, [f64]>],
+    ) -> Result<FlowLines> {
+        let interface = &self.scene.requested.interface;
+        let Some(leakage) =
+            interface.leakage.filter(|_| [FLUX.name, FLUID_PRESSURE.name].contains(&field.name))
+        else {
+            return Ok((Vec::new(), Vec::new()));
+        };
+        let paths = state.solved().and_then(|solved| solved.state.interface.percolation);
+        let along_the_flow = |[along_x, along_y]: [PathState; 2]| match leakage.along {
+            FlowAxis::X => along_x,
+            FlowAxis::Y => along_y,
+        };
+        let marks = paths.and_then(|paths| along_the_flow(paths).centre).into_iter().collect();
+        let [along_x, along_y] = components else { return Ok((Vec::new(), marks)) };
+        let name = self.file(field.name, state.index, FieldFormat::Png.extension()).to_string();
+        let failed = runs::Error::model(name.clone());
+        let component = |values: &[f64]| Field::new(self.cells, self.scene.surface.size(), values.to_vec());
+        let flux = component(along_x).and_then(|x| Ok([x, component(along_y)?])).map_err(failed)?;
+        let StreamFunction { points, origin, step, values } =
+            stream_function(&flux, leakage.along, self.scene.effects.boundary);
+        let (low, high) = FieldPicture::ends(&values);
+        if high <= low {
+            return Ok((Vec::new(), marks));
+        }
+        let level = |k: usize| low + (high - low) * (k as f64 + 0.5) / FLOW_LINES as f64;
+        let levels: Vec<f64> = (0..FLOW_LINES).map(level).collect();
+        let mut lines = contour_lines(&name, points, &values, &levels)?;
+        for at in lines.iter_mut().flatten() {
+            *at = [origin[0] + step[0] * at[0], origin[1] + step[1] * at[1]];
+        }
+        Ok((lines, marks))
+    }
+
     /// The pictures of a field of a state, by their names: a map, or a curve over a profile.
     fn pictures(
         &self,
@@ -145,7 +192,9 @@ impl FieldPictures<'_> {
         let pressure = if field.outlined { self.read(PRESSURE, state.index, 1) } else { None };
         let contact: Vec<bool> = pressure.iter().flatten().flat_map(|p| p.iter()).map(|p| *p > 0.0).collect();
         (drawn.range, drawn.contact) = (of_all.range, &contact);
-        if let [along_x, along_y] = components {
+        let (lines, marks) = self.of_flow(field, state, components)?;
+        (drawn.lines, drawn.marks) = (&lines, &marks);
+        if let ([along_x, along_y], true) = (components, lines.is_empty()) {
             drawn.arrows = Some([along_x, along_y]);
         }
         if of_all.are_several && field.name != HEIGHTS.name && field.classes.is_empty() {
@@ -230,6 +279,8 @@ pub(crate) fn picture<'a>(
         range: None,
         contact: &[],
         arrows: None,
+        lines: &[],
+        marks: &[],
         classes,
     }
 }

@@ -83,6 +83,8 @@ impl SurfaceReport<'_> {
             range: None,
             contact: &[],
             arrows: None,
+            lines: &[],
+            marks: &[],
             classes: &[],
         };
         if self.statistics.profile {
