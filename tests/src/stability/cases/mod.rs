@@ -6,6 +6,7 @@ mod few;
 mod friction;
 mod friction_paths;
 mod hardness;
+mod interface;
 mod kernels;
 mod limits;
 mod periodic;
@@ -41,6 +42,7 @@ pub fn cases() -> Vec<HardCase> {
         &friction::CASES,
         &friction_paths::CASES,
         &kernels::CASES,
+        &interface::CASES,
         &chance::CASES,
     ]
     .concat()

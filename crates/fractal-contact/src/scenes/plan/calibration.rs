@@ -8,7 +8,8 @@ use crate::scenes::read::{
     LoadList, LoadRequest, Numerics, PrescribedLoad, Result, SceneFile, SceneSurface, cells, sampled, step_to,
 };
 use bem3d::{BYTES_PER_CELL, solve_bytes};
-use contact_model::{Adhesion, Cells, ContactState, Coupling, Friction, Rheology, Surface};
+use contact_model::{Adhesion, Boundary, Cells, ContactState, Coupling, Friction, Rheology, Surface};
+use interface::FlowOptions;
 use mdr1d::BYTES_PER_ELEMENT;
 use std::time::Duration;
 use web_time::Instant;
@@ -47,6 +48,19 @@ const SOLVES_OF_STEPS: f64 = 5.0;
 const FRONTS_CELLS: f64 = 257.0;
 const FRONTS_TIME: f64 = 9.0;
 const RANGE_TIME: f64 = 3.0;
+
+/// Microseconds for each cell of the flow through a gap with its bounds and what the error of the gap does to it, of a
+/// film, and of the stress at one depth; on the machine of the book's table of leakage.
+const MICROSECONDS_OF_A_FLOW: f64 = 6.0;
+const MICROSECONDS_OF_A_FILM: f64 = 2.0;
+const MICROSECONDS_OF_A_DEPTH: f64 = 1.2;
+const MICROSECONDS_OF_A_PERIODIC_DEPTH: f64 = 0.25;
+/// Depths between those of the scene at which the largest stress is refined.
+const REFINED_DEPTHS: f64 = 12.0;
+/// Maps of a film: vectors of conjugate gradients, tables and transforms of twice the sides.
+const BYTES_OF_A_FILM: f64 = 40.0;
+/// Maps of transforms and influence functions of the stress.
+const BYTES_OF_STRESS: f64 = 60.0;
 
 /// Time of one model from the sizes of its solves and from times that were measured once
 /// ([`milliseconds_of_sizes`]), within a factor of ten. Operator applications and linear solves are not
@@ -97,7 +111,7 @@ pub(crate) fn milliseconds_of_sizes(scene: &SceneFile, numerics: &Numerics) -> u
 
 fn seconds_of_sizes(scene: &SceneFile, numerics: &Numerics) -> f64 {
     let states = scene.request.count() as f64;
-    match numerics {
+    let of_contact = match numerics {
         Numerics::Bem3d(model) => match rough_sweep(scene, model) {
             Some(seconds) => seconds,
             None => states * steps_of_time(scene) * seconds_of_dense(scene, numerics),
@@ -110,7 +124,8 @@ fn seconds_of_sizes(scene: &SceneFile, numerics: &Numerics) -> f64 {
             1e-9 * n * n.log2()
         }
         _ => 0.0,
-    }
+    };
+    of_contact + seconds_of_interface(scene, numerics)
 }
 
 /// Solves that a state takes: of a viscoelastic history three for each step of time.
@@ -192,6 +207,43 @@ fn fields(scene: &SceneFile, numerics: &Numerics, states: f64) -> (f64, f64) {
     (of_state * states, of_state * states * count * 8.0)
 }
 
+/// Seconds in which the flow, the film and the stress of all states of a model on one surface are computed.
+fn seconds_of_interface(scene: &SceneFile, numerics: &Numerics) -> f64 {
+    let Cells { columns, rows } = cells(scene, numerics);
+    let interface = &scene.requested.interface;
+    let depths = interface.stress_below.as_ref().map_or(0.0, |of| of.depths.len() as f64 + REFINED_DEPTHS);
+    let of_a_depth = if scene.effects.boundary == Boundary::Periodic {
+        MICROSECONDS_OF_A_PERIODIC_DEPTH
+    } else {
+        MICROSECONDS_OF_A_DEPTH
+    };
+    let mut microseconds = of_a_depth * depths;
+    for (asked, time) in [
+        (interface.leakage.is_some(), MICROSECONDS_OF_A_FLOW),
+        (interface.film.is_some(), MICROSECONDS_OF_A_FILM),
+        (interface.film.is_some_and(|film| film.along.is_some()), MICROSECONDS_OF_A_FLOW),
+    ] {
+        microseconds += if asked { time } else { 0.0 };
+    }
+    1e-6 * microseconds * columns as f64 * rows as f64 * scene.request.count() as f64
+}
+
+/// Bytes that they need beside the contact.
+fn bytes_of_interface(scene: &SceneFile, numerics: &Numerics) -> f64 {
+    let cells = cells(scene, numerics);
+    let interface = &scene.requested.interface;
+    let flow = |continuum| interface::flow_memory(cells, FlowOptions { continuum, ..FlowOptions::default() });
+    let along = interface.film.is_some_and(|film| film.along.is_some());
+    let each = [
+        if interface.leakage.is_some() { flow(true) } else { 0.0 },
+        if along { flow(false) } else { 0.0 },
+        if interface.film.is_some() { BYTES_OF_A_FILM * cells.map_bytes() } else { 0.0 },
+        if interface.stress_below.is_some() { BYTES_OF_STRESS * cells.map_bytes() } else { 0.0 },
+    ];
+    // One after the other.
+    each.into_iter().fold(0.0, f64::max)
+}
+
 /// Time and work of a small solve, scaled. What a small grid refuses is not predicted: its run will tell.
 pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
     let (grid, size) = (cells(scene, numerics), scene.surface.size());
@@ -231,6 +283,7 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
         solved.later / solved.states.saturating_sub(1).max(1) as f64 * requested.saturating_sub(1) as f64;
     cost.seconds =
         surfaces * (solved.prepare * time.powf(2.0 / TIME_EXPONENT) + (solved.first + later) * time);
+    cost.seconds += surfaces * seconds_of_interface(scene, numerics);
     cost.seconds *= with_coarser_grids(scene, numerics);
     cost.applications *= applications * per_state;
     cost.linear_solves *= per_state;
@@ -267,7 +320,7 @@ fn memory_at(scene: &SceneFile, numerics: &Numerics, contact: f64) -> f64 {
     let bytes = match numerics {
         Numerics::Bem3d(_) | Numerics::Equivalent(_) => {
             let solve = solve_bytes(&scene.effects, &scene.requested.outputs, cells, contact);
-            (PREPARED_BYTES * count + solve).max(BYTES_PER_CELL * count)
+            (PREPARED_BYTES * count + solve).max(BYTES_PER_CELL * count) + bytes_of_interface(scene, numerics)
         }
         _ => BYTES_PER_ELEMENT * numerics.size() as f64,
     };
