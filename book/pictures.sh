@@ -28,7 +28,8 @@ scene fretting-loop curve-tangential_force.svg traction-bem3d-0-006.png slip-bem
 scene rough-creep curve-approach.svg
 scene rubber-cycles curve-force.svg
 scene sealing-land pressure-bem3d-0-002.png
-scene seal fluid_pressure-bem3d-0-002.png flux-bem3d-0-000.png
+scene seal fluid_pressure-bem3d-0-002.png flux-bem3d-0-002.png
+scene gear-tooth stress_section-bem3d-0-002.png
 scene rough-plastic plastic_depth-bem3d-0-002.png
 scene plastic-path curve-force.svg
 scene sticky-ball curve-force.svg

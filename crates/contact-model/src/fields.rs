@@ -133,6 +133,9 @@ pub struct Fields {
     pub fluid_pressure: Option<Field>,
     /// Equivalent stress of von Mises below each cell, at the depth where it is largest; of a scene too.
     pub von_mises: Option<Field>,
+    /// Equivalent stress of von Mises in a vertical section below the largest one: a row for each depth, from the surface
+    /// down; of a scene too.
+    pub stress_section: Option<Field>,
     /// Flow of this fluid per width along x and along y, in volume per time and length; of a scene too.
     pub flux: Option<[Field; 2]>,
 }

@@ -273,3 +273,36 @@ fn grids_are_compared_in_leakage_and_stress() {
         }
     }
 }
+
+/// A section passes through the largest stress, has the surface in its first row and the stress of the library.
+#[test]
+fn a_section_through_the_largest_stress() {
+    let ball = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nbodies = [\"rigid\", { young = 0.91, poisson = 0.3 }]\n\
+        force = 0.0013333333333333\n[scene.body]\nkind = \"sphere\"\nradius = 1\nsize = [0.3, 0.2]\n[models.bem3d]\ncells = 96\n\
+        [outputs]\nstress_section = [\"npy\", \"png\", \"vti\"]\nstress_below = { depths = [0.02, 0.04, 0.06, 0.16], section = \"y\" }\n";
+    let directory = tempfile::tempdir().unwrap();
+    let found = results(directory.path(), ball);
+    let largest = column(&found, "largest_von_mises")[0];
+    let depth = column(&found, "largest_von_mises_depth")[0];
+    let file = |ending: &str| {
+        std::fs::read(directory.path().join(format!("out/stress_section-bem3d-0-000.{ending}")))
+    };
+    let npy = file("npy").unwrap();
+    assert!(String::from_utf8_lossy(&npy).contains("'shape': (64, 64)"));
+    let values: Vec<f64> =
+        npy[npy.len() - 8 * 64 * 64..].as_chunks().0.iter().map(|bytes| f64::from_le_bytes(*bytes)).collect();
+    let most = values.iter().copied().fold(0.0, f64::max);
+    let row = values.iter().position(|v| (v - most).abs() < 1e-15).unwrap() / 64;
+    assert!((most / largest - 1.0).abs() < 1e-3 && most <= largest * (1.0 + 1e-9), "{most} {largest}");
+    // Rows are 0.16/64 apart.
+    assert!(((row as f64 + 0.5) * 0.0025 - depth).abs() < 0.003, "{row} {depth}");
+    assert!(file("png").is_ok());
+    let vti = String::from_utf8_lossy(&file("vti").unwrap()).into_owned();
+    assert!(
+        vti.contains("WholeExtent=\"0 64 0 64 0 0\"") && vti.contains("Spacing=\"0.003125 0.0025"),
+        "{}",
+        &vti[..300]
+    );
+    let report = std::fs::read_to_string(directory.path().join("out/report.html")).unwrap();
+    assert!(report.contains("Von Mises stress in a section"));
+}

@@ -48,6 +48,8 @@ pub struct FieldPicture<'a> {
     pub lines: &'a [Vec<[f64; 2]>],
     /// Points that are marked with a ring, likewise.
     pub marks: &'a [[f64; 2]],
+    /// Whether the second axis is a depth: the first row is on top, and the axis is -z.
+    pub downwards: bool,
     /// Names of the classes that the values 0, 1, ... stand for: a legend with a colour for each class takes
     /// the place of the scale. Empty for measured values.
     pub classes: &'a [&'a str],
@@ -191,11 +193,16 @@ impl FieldPicture<'_> {
         let [left, top, w, h] = map.place;
         let (unit, per_unit) = multiple(self.length_unit, x.max(y));
         map.axis(drawing, AxisSide::Below, Axis::Linear(0.0, per_unit * x), None);
-        map.axis(drawing, AxisSide::Left, Axis::Linear(0.0, per_unit * y), None);
+        let (second, name) = if self.downwards {
+            (Axis::Linear(-per_unit * y, 0.0), "$-z$")
+        } else {
+            (Axis::Linear(0.0, per_unit * y), "$y$")
+        };
+        map.axis(drawing, AxisSide::Left, second, None);
         let around = [left - 0.5 * LINE, top - 0.5 * LINE, w + LINE, h + LINE];
         Frame { place: around, ..*map }.outline(drawing, LINE);
         map.name_below(drawing, &with_unit("$x$", &unit), NAME, top + h + 3.2 * TICK);
-        map.name_beside(drawing, &with_unit("$y$", &unit), NAME, 1.4 * TICK);
+        map.name_beside(drawing, &with_unit(name, &unit), NAME, 1.4 * TICK);
     }
 
     /// The bar of colours beside the map, with its axis and its name.
@@ -288,7 +295,10 @@ impl FieldPicture<'_> {
     /// The lines and the rings around marked points, both seen on dark and on light colours.
     fn draw_lines_and_marks(&self, drawing: &mut Drawing, frame: Rectangle) {
         let [left, top, w, h] = frame;
-        let on_map = |[x, y]: &[f64; 2]| (left + w * (x / self.size.x), top + h * (1.0 - y / self.size.y));
+        let on_map = |[x, y]: &[f64; 2]| {
+            let up = y / self.size.y;
+            (left + w * (x / self.size.x), top + h * if self.downwards { up } else { 1.0 - up })
+        };
         for line in self.lines {
             let points: Vec<(f64, f64)> = line.iter().map(on_map).collect();
             for (color, width) in [(INK, 2.4), ("#ffffff", 1.2)] {
@@ -381,7 +391,8 @@ impl FieldPicture<'_> {
             ring @ 1..=OUTLINE_WIDTH => OUTLINE[ring - 1],
             _ => color(self.values[shown[i]]),
         };
-        (0..rows).rev().flat_map(|y| (0..columns).map(move |x| y * columns + x)).map(pixel).collect()
+        let row = |down: usize| if self.downwards { down } else { rows - 1 - down };
+        (0..rows).map(row).flat_map(|y| (0..columns).map(move |x| y * columns + x)).map(pixel).collect()
     }
 }
 
@@ -420,6 +431,7 @@ mod tests {
             arrows: None,
             lines: &[],
             marks: &[],
+            downwards: false,
             classes: &[],
         }
     }

@@ -128,7 +128,16 @@ pub fn run_in_memory(
             let states = StateTable::new(scene, vec![unit], title(scene));
             let view = |file: FieldFile<'_>| field_pictures::view(&folder, file);
             let outcome = SceneOutcome::default();
-            let report = Report { states: &states, plan, outcome: &outcome, statistics: None, view: &view };
+            // Pictures are drawn last.
+            let drawn = |_: FieldFile<'_>| None;
+            let report = Report {
+                states: &states,
+                plan,
+                outcome: &outcome,
+                statistics: None,
+                view: &view,
+                drawn: &drawn,
+            };
             // A picture that cannot be encoded is an error of the report at the end.
             solved(&report.of_one_state().unwrap_or_default());
             Ok(())
@@ -222,7 +231,8 @@ impl<'a> SceneAnswers<'a> {
         outcome.seconds = start.elapsed().as_secs_f64();
         let view = |file: FieldFile<'_>| field_pictures::view(folder, file);
         let statistics = statistics.as_ref();
-        let report = Report { states: &states, plan, outcome, statistics, view: &view };
+        let drawn = |file: FieldFile<'_>| folder.read(&file.to_string());
+        let report = Report { states: &states, plan, outcome, statistics, view: &view, drawn: &drawn };
         let report = report.page()?;
         write("report.html", report.html().into_bytes())?;
         outcome.files.extend(written);

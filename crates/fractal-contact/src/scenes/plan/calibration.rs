@@ -5,7 +5,8 @@
 
 use crate::scenes::plan::Cost;
 use crate::scenes::read::{
-    LoadList, LoadRequest, Numerics, PrescribedLoad, Result, SceneFile, SceneSurface, cells, sampled, step_to,
+    LoadList, LoadRequest, Numerics, PrescribedLoad, Result, SECTION_DEPTHS, SceneFile, SceneSurface, cells,
+    sampled, step_to,
 };
 use bem3d::{BYTES_PER_CELL, solve_bytes};
 use contact_model::{Adhesion, Boundary, Cells, ContactState, Coupling, Friction, Rheology, Surface};
@@ -211,7 +212,11 @@ fn fields(scene: &SceneFile, numerics: &Numerics, states: f64) -> (f64, f64) {
 fn seconds_of_interface(scene: &SceneFile, numerics: &Numerics) -> f64 {
     let Cells { columns, rows } = cells(scene, numerics);
     let interface = &scene.requested.interface;
-    let depths = interface.stress_below.as_ref().map_or(0.0, |of| of.depths.len() as f64 + REFINED_DEPTHS);
+    let of_section = if scene.requested.stress_section.is_empty() { 0.0 } else { SECTION_DEPTHS as f64 };
+    let depths = interface
+        .stress_below
+        .as_ref()
+        .map_or(0.0, |of| of.depths.len() as f64 + REFINED_DEPTHS + of_section);
     let of_a_depth = if scene.effects.boundary == Boundary::Periodic {
         MICROSECONDS_OF_A_PERIODIC_DEPTH
     } else {

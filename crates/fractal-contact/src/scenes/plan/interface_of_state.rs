@@ -6,7 +6,10 @@ use contact_model::{
     Boundary, ContactState, Effect, Error, Field, Fields, FilmState, InterfaceState, LargestStress,
     LeakageState, NormalLoad, PathState, Result, Stop,
 };
-use interface::stress::{PeriodicLoad, StressedBody, SubsurfaceStress, SurfaceLoad, largest_von_mises};
+use interface::stress::{
+    PeriodicLoad, SectionLine, StressedBody, SubsurfaceStress, SurfaceLoad, largest_von_mises,
+    stress_section, von_mises,
+};
 use interface::{
     FlowAxis, FlowBounds, FlowOptions, conductance_until, gap_error, leakage_until, open_gap, percolation,
 };
@@ -59,7 +62,9 @@ pub(crate) fn with_interface(
     if let Some(flow) = flow {
         (fields.fluid_pressure, fields.flux) = (Some(flow.pressure), Some(flow.flux));
     }
-    fields.von_mises = stressed.and_then(|(_, field)| field);
+    if let Some((_, below)) = stressed {
+        (fields.von_mises, fields.stress_section) = (below.at_largest, below.section);
+    }
     Ok(state.with_interface(read_off).with_fields(fields))
 }
 
@@ -180,13 +185,21 @@ fn paths(gap: &Field, boundary: Boundary) -> Result<[PathState; 2]> {
     Ok([along(FlowAxis::X)?, along(FlowAxis::Y)?])
 }
 
-/// The largest stress and, where it is requested, the stress at its depth.
+/// Fields of the stress below the surface, those that are requested.
+struct FieldsBelow {
+    /// At the depth of the largest stress.
+    at_largest: Option<Field>,
+    /// In a vertical section through it.
+    section: Option<Field>,
+}
+
+/// The largest stress, and the fields that are requested.
 fn stress(
     scene: &SceneFile,
     numerics: &Numerics,
     (state, of): (&ContactState, &RequestedStress),
     stop: Stop<'_>,
-) -> Result<(LargestStress, Option<Field>)> {
+) -> Result<(LargestStress, FieldsBelow)> {
     let (body, poisson) = of
         .of_body(scene.pair, scene.effects.friction)
         .map_err(|wrong| Error::unsupported(numerics.name(), wrong.to_string()))?;
@@ -196,10 +209,24 @@ fn stress(
     let body = StressedBody { poisson, boundary: scene.effects.boundary, periodic };
     let found = largest_von_mises(&load, body, &of.depths, stop)?;
     let factor = of.yield_stress.map(|stress| found.factor_until_yield(stress)).transpose()?;
-    let field = if scene.requested.von_mises.is_empty() {
+    let at_largest = if scene.requested.von_mises.is_empty() {
         None
     } else {
         Some(SubsurfaceStress::new(&load, body)?.at_depth(found.depth, stop)?.von_mises()?)
+    };
+    let section = if scene.requested.stress_section.is_empty() {
+        None
+    } else {
+        let [dx, dy] = [load.pressure().dx(), load.pressure().dy()];
+        let line = match of.section {
+            Some(FlowAxis::Y) => SectionLine::Column((found.centre[0] / dx) as usize),
+            _ => SectionLine::Row((found.centre[1] / dy) as usize),
+        };
+        let (cells, size) = of.section_grid(load.cells(), load.size());
+        let step = size.y / cells.rows as f64;
+        let depths: Vec<f64> = (0..cells.rows).map(|k| (k as f64 + 0.5) * step).collect();
+        let stress = stress_section(&load, body, line, &depths, stop)?.stress;
+        Some(Field::new(cells, size, stress.iter().map(von_mises).collect())?)
     };
     let largest = LargestStress {
         von_mises: found.value,
@@ -207,5 +234,5 @@ fn stress(
         centre: found.centre,
         factor_until_yield: factor.flatten(),
     };
-    Ok((largest, field))
+    Ok((largest, FieldsBelow { at_largest, section }))
 }

@@ -1,7 +1,7 @@
 //! The keys of leakage, percolation and the stress below the surface.
 
 use crate::scenes::read::{Diagnostic, Entry, ReadResult, System, printed};
-use contact_model::{Body, Friction, InterfaceOutput, Pair};
+use contact_model::{Body, Cells, Friction, InterfaceOutput, Pair, Size};
 use interface::FlowAxis;
 use interface::stress::LoadedBody;
 use surface_io::Dimension;
@@ -67,6 +67,23 @@ pub struct RequestedStress {
     pub yield_stress: Option<f64>,
     /// The body; `None` where it does not matter, or where one of them is rigid.
     pub body: Option<LoadedBody>,
+    /// The axis of a vertical section; `None` for x.
+    pub section: Option<FlowAxis>,
+}
+
+/// Depths of a vertical section.
+pub(crate) const SECTION_DEPTHS: usize = 64;
+
+impl RequestedStress {
+    /// The cells and the sides of a vertical section below a map, with the surface in the first row.
+    pub(crate) fn section_grid(&self, cells: Cells, size: Size) -> (Cells, Size) {
+        let (count, side) = match self.section {
+            Some(FlowAxis::Y) => (cells.rows, size.y),
+            _ => (cells.columns, size.x),
+        };
+        let deepest = self.depths.iter().copied().fold(0.0, f64::max);
+        (Cells { columns: count, rows: SECTION_DEPTHS }, Size { x: side, y: deepest })
+    }
 }
 
 impl RequestedInterface {
@@ -108,7 +125,7 @@ pub(crate) fn print_leakage(leakage: &RequestedLeakage, system: System) -> Strin
 }
 
 pub(crate) fn print_stress(stress: &RequestedStress, system: System) -> String {
-    let RequestedStress { depths, yield_stress, body } = stress;
+    let RequestedStress { depths, yield_stress, body, section } = stress;
     let depths = depths.iter().map(|depth| printed::quantity(*depth, Dimension::LENGTH, system));
     let mut parts = vec![format!("depths = [{}]", depths.collect::<Vec<_>>().join(", "))];
     parts.extend(
@@ -117,6 +134,7 @@ pub(crate) fn print_stress(stress: &RequestedStress, system: System) -> String {
         }),
     );
     parts.extend(body.map(|body| format!("body = {}", word_of(&BODIES, body))));
+    parts.extend(section.map(|axis| format!("section = {}", word_of(&AXES, axis))));
     format!("{{ {} }}", parts.join(", "))
 }
 
@@ -170,8 +188,9 @@ pub(crate) fn read_stress(entry: &Entry<'_>, system: System) -> ReadResult<Reque
     let yield_stress =
         table.find("yield_stress").map(|stress| stress.positive(Dimension::PRESSURE, system)).transpose()?;
     let body = table.find("body").map(|body| body.choice(&BODIES)).transpose()?;
+    let section = table.find("section").map(|axis| axis.choice(&AXES)).transpose()?;
     table.finish()?;
-    Ok(RequestedStress { depths, yield_stress, body })
+    Ok(RequestedStress { depths, yield_stress, body, section })
 }
 
 impl RequestedStress {

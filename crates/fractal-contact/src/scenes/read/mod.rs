@@ -37,13 +37,13 @@ pub(crate) use effects::{EFFECT_KEYS, EffectLine, effect_lines, read_effects};
 pub(crate) use entries::{Entries, Entry, LengthOrPair, ReadResult, System, nearest, suggestion};
 pub(crate) use error::{Error, Result};
 pub(crate) use interface_outputs::{
-    FilmMaterial, RequestedFilm, RequestedInterface, RequestedLeakage, RequestedStress,
+    FilmMaterial, RequestedFilm, RequestedInterface, RequestedLeakage, RequestedStress, SECTION_DEPTHS,
 };
 pub(crate) use load_kind::PrescribedLoad;
 pub(crate) use loads::{LoadList, LoadRequest};
 pub(crate) use numerics::{MOST_CELLS, Numerics};
 pub(crate) use outputs::{
-    FLUID_PRESSURE, FLUX, FieldFormat, HEIGHTS, RequestedOutputs, all_fields, read_outputs,
+    FLUID_PRESSURE, FLUX, FieldFormat, HEIGHTS, RequestedOutputs, STRESS_SECTION, all_fields, read_outputs,
 };
 pub(crate) use path::{PathPiece, cycles, step_to};
 pub(crate) use places::Places;

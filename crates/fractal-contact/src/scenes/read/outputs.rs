@@ -97,9 +97,25 @@ pub(crate) static VON_MISES: FieldQuantity = FieldQuantity {
     take: |fields| fields.von_mises.take().into_iter().collect(),
 };
 
+/// The stress in a vertical section. Its rows are depths, not rows of the map.
+pub(crate) static STRESS_SECTION: FieldQuantity = FieldQuantity {
+    name: "stress_section",
+    words: "von Mises stress in a section",
+    symbol: "",
+    unit: "Pa",
+    meaning: "equivalent stress of von Mises in a vertical section through the largest one, a row for each depth",
+    components: 1,
+    white_zero: false,
+    signed: false,
+    classes: &[],
+    outlined: false,
+    get: |fields| fields.stress_section.as_slice(),
+    take: |fields| fields.stress_section.take().into_iter().collect(),
+};
+
 /// Every field that a scene can write to files.
 pub(crate) fn all_fields() -> impl Iterator<Item = &'static FieldQuantity> {
-    [&HEIGHTS, &FLUID_PRESSURE, &FLUX, &VON_MISES].into_iter().chain(FIELDS)
+    [&HEIGHTS, &FLUID_PRESSURE, &FLUX, &VON_MISES, &STRESS_SECTION].into_iter().chain(FIELDS)
 }
 
 /// The requested outputs: results of the models, and files.
@@ -118,6 +134,8 @@ pub struct RequestedOutputs {
     pub flux: Vec<FieldFormat>,
     /// Formats of the stress at the depth of the largest one.
     pub von_mises: Vec<FieldFormat>,
+    /// Formats of the stress in a section.
+    pub stress_section: Vec<FieldFormat>,
     /// Distributions that are counted.
     pub distributions: Vec<Distributed>,
     /// Whether states of boundary elements are compared with those on coarser grids.
@@ -153,6 +171,7 @@ impl RequestedOutputs {
             (&FLUID_PRESSURE, &self.fluid_pressure),
             (&FLUX, &self.flux),
             (&VON_MISES, &self.von_mises),
+            (&STRESS_SECTION, &self.stress_section),
         ];
         if let Some((_, formats)) = own.into_iter().find(|(own, _)| own.name == field.name) {
             return formats;
@@ -188,6 +207,7 @@ impl RequestedOutputs {
             (FLUID_PRESSURE.name, !self.fluid_pressure.is_empty()),
             (FLUX.name, !self.flux.is_empty()),
             (VON_MISES.name, !self.von_mises.is_empty()),
+            (STRESS_SECTION.name, !self.stress_section.is_empty()),
             ("distributions", !self.distributions.is_empty()),
             ("grid_error", self.grid_error),
             ("leakage", self.interface.leakage.is_some()),
@@ -255,6 +275,14 @@ pub(crate) static OUTPUT_KEYS: KeyTable<RequestedOutputs> = KeyTable {
             default: "none",
             read: |requested, entry, _| read_formats(entry).map(|formats| requested.von_mises = formats),
             print: |requested, _| print_formats(&requested.von_mises),
+        },
+        Key {
+            name: "stress_section",
+            takes: "formats",
+            about: "equivalent stress in a vertical section through the largest one of `stress_below`, down to the largest of its `depths`; along x, or along y with `section = \"y\"` in `stress_below`",
+            default: "none",
+            read: |requested, entry, _| read_formats(entry).map(|formats| requested.stress_section = formats),
+            print: |requested, _| print_formats(&requested.stress_section),
         },
         Key {
             name: "law",
@@ -333,7 +361,7 @@ pub(crate) static OUTPUT_KEYS: KeyTable<RequestedOutputs> = KeyTable {
         Key {
             name: "stress_below",
             takes: "table",
-            about: "the largest equivalent stress of von Mises below the surface, and its place: `{ depths = [\"1 um\", \"2 um\", \"5 um\"], yield_stress = \"1 GPa\", body = \"second\" }`. The depth is refined between the neighbours of the best of `depths`. With `yield_stress` there is the factor on all tractions until yield. `body` is needed where two elastic bodies differ",
+            about: "the largest equivalent stress of von Mises below the surface, and its place: `{ depths = [\"1 um\", \"2 um\", \"5 um\"], yield_stress = \"1 GPa\", body = \"second\", section = \"x\" }`. The depth is refined between the neighbours of the best of `depths`. With `yield_stress` there is the factor on all tractions until yield. `body` is needed where two elastic bodies differ",
             default: "none",
             read: |requested, entry, context| {
                 requested.interface.stress_below = Some(read_stress(entry, context.system)?);

@@ -792,6 +792,7 @@ fn check_interface(scene: &SceneFile, places: &Places) -> ReadResult<()> {
         ("fluid_pressure", &outputs.fluid_pressure, no_fluid, "leakage", LEAKAGE_EXAMPLE),
         ("flux", &outputs.flux, no_fluid, "leakage", LEAKAGE_EXAMPLE),
         ("von_mises", &outputs.von_mises, no_stress, "stress_below", STRESS_EXAMPLE),
+        ("stress_section", &outputs.stress_section, no_stress, "stress_below", STRESS_EXAMPLE),
     ] {
         if lacks && !formats.is_empty() {
             return refused(key, format!("`{key}` is requested without `{missing}`"), example);
@@ -837,6 +838,10 @@ fn check_interface(scene: &SceneFile, places: &Places) -> ReadResult<()> {
     if scene.effects.layer.is_some() {
         let message = "the stress below the surface of a layer is not known here".to_owned();
         return refused("stress_below", message, "remove `layer` or `stress_below`");
+    }
+    if !outputs.stress_section.is_empty() && !stress.depths.iter().any(|depth| *depth > 0.0) {
+        let message = "a section down to the depth 0: `stress_below` names no other one".to_owned();
+        return refused("stress_section", message, "add the depth down to which it goes to `depths`");
     }
     let body = stress.of_body(scene.pair, scene.effects.friction);
     body.map(|_| ()).map_err(|wrong| wrong.at(places.key("outputs.stress_below")))

@@ -1,10 +1,12 @@
 //! Pictures of fields. They are drawn last, when the range over all loads is known, so that all pictures of a
 //! surface have one scale.
 
-use crate::scenes::read::{FLUID_PRESSURE, FLUX, FieldFormat, HEIGHTS, Result, SceneFile, words};
+use crate::scenes::read::{
+    FLUID_PRESSURE, FLUX, FieldFormat, HEIGHTS, Result, STRESS_SECTION, SceneFile, words,
+};
 use crate::scenes::run::{FieldFile, FieldView, Folder, ModelResult, StateRecord, StoredFile};
 
-use contact_model::{Cells, Field, FieldQuantity, PathState};
+use contact_model::{Cells, Field, FieldQuantity, PathState, Size};
 use interface::{FlowAxis, StreamFunction, stream_function};
 use plots::{Chart, Curve, FieldPicture, contour_lines};
 use std::borrow::Cow;
@@ -124,7 +126,8 @@ impl FieldPictures<'_> {
     fn read(&self, field: &str, state: usize, components: usize) -> Option<Vec<Cow<'static, [f64]>>> {
         let bytes = self.folder.read(&waiting(self.file(field, state, EXTENSION)))?;
         let (values, rest) = bytes.as_chunks();
-        let count = self.cells.checked_count().filter(|count| *count > 0)?;
+        let (cells, _) = grid_of(self.scene, self.cells, field);
+        let count = cells.checked_count().filter(|count| *count > 0)?;
         let whole = rest.is_empty() && Some(values.len()) == count.checked_mul(components);
         let component = |values: &[[u8; 8]]| values.iter().map(|v| f64::from_le_bytes(*v)).collect();
         whole.then(|| values.chunks_exact(count).map(component).collect())
@@ -182,7 +185,7 @@ impl FieldPictures<'_> {
         let values = magnitude(components);
         let name = self.file(field.name, state.index, FieldFormat::Png.extension()).to_string();
         let of_state = FieldOfState { field, model: self.model, surface: self.surface, state: Some(state) };
-        let mut drawn = picture(scene, &of_state, cells, &values);
+        let mut drawn = picture(scene, &of_state, grid_of(scene, cells, field.name).0, &values);
         if scene.surface.is_profile() {
             let step = scene.surface.size().x / cells.columns as f64;
             let points = values.iter().enumerate().map(|(i, v)| ((i as f64 + 0.5) * step, *v));
@@ -234,6 +237,15 @@ pub(crate) fn sweep(out: &Path) {
     }
 }
 
+/// Cells and sides of a field: those of the map but for a vertical section.
+fn grid_of(scene: &SceneFile, cells: Cells, field: &str) -> (Cells, Size) {
+    let size = scene.surface.size();
+    match &scene.requested.interface.stress_below {
+        Some(stress) if field == STRESS_SECTION.name => stress.section_grid(cells, size),
+        _ => (cells, size),
+    }
+}
+
 /// A field of a state on a surface; the heights need no state.
 pub(crate) struct FieldOfState<'a> {
     pub field: &'a FieldQuantity,
@@ -260,7 +272,8 @@ pub(crate) fn picture<'a>(
     let number = if scene.sampling.surfaces > 1 { format!(", surface {surface}") } else { String::new() };
     let subtitle = format!("{}{number}: {load}", words::scene_name(scene));
     let [unit, length_unit] = [unit, "m"].map(|unit| scene.system.shown(unit));
-    let size = scene.surface.size();
+    let (_, size) = grid_of(scene, cells, name);
+    let downwards = name == STRESS_SECTION.name;
     FieldPicture {
         title,
         subtitle,
@@ -281,6 +294,7 @@ pub(crate) fn picture<'a>(
         arrows: None,
         lines: &[],
         marks: &[],
+        downwards,
         classes,
     }
 }

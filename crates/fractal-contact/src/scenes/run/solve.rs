@@ -10,7 +10,7 @@ use crate::scenes::run::{
     Warning, field_pictures,
 };
 use contact_model::{
-    Cells, ContactState, Field, FieldQuantity, LargestPull, Load, NormalLoad, Normalisation, PreparedContact,
+    ContactState, Field, FieldQuantity, LargestPull, Load, NormalLoad, Normalisation, PreparedContact,
     Status, Stop, never,
 };
 use std::borrow::Cow;
@@ -398,7 +398,7 @@ impl WrittenField<'_> {
                 let name = path.display().to_string();
                 Some(plots::grey_png(&name, field.cells(), field.size(), shown)?)
             }
-            FieldFormat::Vti => Some(vti(path, quantity, scene, field.cells(), components)?),
+            FieldFormat::Vti => Some(vti(path, quantity, scene, field, components)?),
         })
     }
 }
@@ -407,7 +407,7 @@ fn vti(
     path: &Path,
     quantity: &FieldQuantity,
     scene: &SceneFile,
-    grid: Cells,
+    field: &Field,
     components: &[Cow<'_, [f64]>],
 ) -> Result<Vec<u8>> {
     let unit = scene.system.shown(quantity.unit);
@@ -421,7 +421,7 @@ fn vti(
         .zip(components)
         .map(|(name, values)| surface_io::DataArray { name, unit, values })
         .collect();
-    let bytes = surface_io::vti(grid, scene.surface.size(), &arrays, surface_io::Encoding::Base64)
+    let bytes = surface_io::vti(field.cells(), field.size(), &arrays, surface_io::Encoding::Base64)
         .map_err(|e| Error::Argument { name: "vti", reason: format!("{}: {e}", path.display()) })?;
     Ok(bytes)
 }

@@ -217,6 +217,16 @@ pub(crate) fn field(picture: &FieldPicture<'_>, view: &FieldView, reading: Readi
     })
 }
 
+/// The picture file of a field, which has its title and its axes.
+pub(crate) fn picture_file(picture: &FieldPicture<'_>, png: &[u8]) -> Markup {
+    let alt = format!("{}, {}", picture.title, picture.subtitle);
+    html! {
+        figure.field {
+            img src={ "data:image/png;base64," (STANDARD.encode(png)) } alt=(alt);
+        }
+    }
+}
+
 /// The numbers beside an axis of a map, placed from `edge`; `per_length` is the shown unit's in the scene's.
 fn axis_ticks(side: f64, longest: f64, per_length: f64, edge: &str) -> Markup {
     let most = (TICKS[0] * (side / longest)).max(TICKS[1]);

@@ -1,7 +1,7 @@
 //! `report.html`: a run in one page, which needs no network and no other file.
 
 use crate::scenes::plan::{Cost, Plan, PredictedFrom};
-use crate::scenes::read::{HEIGHTS, Result, SceneFile, number, short, words};
+use crate::scenes::read::{FLUX, HEIGHTS, Result, STRESS_SECTION, SceneFile, number, short, words};
 use crate::scenes::run::field_pictures::FieldOfState;
 use crate::scenes::run::{FieldFile, FieldView, SceneOutcome, SolvedUnit, StateRecord, field_pictures};
 use crate::scenes::tell::page::{PageSection, Reading, ReportPage};
@@ -13,6 +13,7 @@ use maud::{Markup, PreEscaped, html};
 use plots::{Chart, Curve, FieldPicture};
 use runs::amounts::{memory, time};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Bytes that the fields of a page may take: five to thirty of 512 x 512 cells.
 const MOST_BYTES: usize = 12_000_000;
@@ -25,6 +26,8 @@ pub(crate) struct Report<'a> {
     pub statistics: Option<&'a MapStatisticsTables>,
     /// What is shown of a field, where it is known.
     pub view: &'a dyn Fn(FieldFile<'_>) -> Option<FieldView>,
+    /// The picture of a field as a PNG, where it is drawn.
+    pub drawn: &'a dyn Fn(FieldFile<'_>) -> Option<Arc<[u8]>>,
 }
 
 impl Report<'_> {
@@ -339,7 +342,9 @@ impl Report<'_> {
                 views.extend(self.scene().requested.fields().filter_map(|(field, _)| {
                     let file =
                         FieldFile { field: field.name, model, surface, state: state.index, extension: "" };
-                    Some(View { shown: (self.view)(file)?, field, model, state: Some(state) })
+                    let view = View { shown: (self.view)(file)?, field, model, state: Some(state) };
+                    // Its rows are depths, for which the page has no axis of its own.
+                    (field.name != STRESS_SECTION.name || self.picture_file(&view).is_some()).then_some(view)
                 }));
             }
         }
@@ -358,6 +363,14 @@ impl Report<'_> {
         FieldPicture { range, ..field_pictures::picture(self.scene(), &of_state, shown.cells, &[]) }
     }
 
+    /// The picture file of a field whose lines or whose depths only that shows.
+    fn picture_file(&self, view: &View<'_>) -> Option<Arc<[u8]>> {
+        let &View { field, model, state, .. } = view;
+        let is_shown = [FLUX.name, STRESS_SECTION.name].contains(&field.name);
+        let file = FieldFile { field: field.name, model, surface: 0, state: state?.index, extension: "png" };
+        if is_shown { (self.drawn)(file) } else { None }
+    }
+
     /// A field with its axes, or the curve of a profile.
     fn figure(&self, view: &View<'_>, range: Option<(f64, f64)>) -> Result<String> {
         let mut picture = self.picture(view, range);
@@ -365,6 +378,8 @@ impl Report<'_> {
         let figure = if self.scene().surface.is_profile() {
             picture.subtitle += &shown.reduction().map_or_else(String::new, |said| format!("; {said}"));
             page::chart(&field_pictures::row_chart(&picture, shown.row(self.scene().surface.size().x)))?
+        } else if let Some(png) = self.picture_file(view) {
+            page::picture_file(&picture, &png)
         } else {
             page::field(&picture, shown, Reading::Values)?
         };

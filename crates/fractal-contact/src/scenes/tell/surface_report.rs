@@ -85,6 +85,7 @@ impl SurfaceReport<'_> {
             arrows: None,
             lines: &[],
             marks: &[],
+            downwards: false,
             classes: &[],
         };
         if self.statistics.profile {

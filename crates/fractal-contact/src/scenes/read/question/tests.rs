@@ -311,8 +311,10 @@ fn interface() -> BoxedStrategy<RequestedInterface> {
     let leakage = (positive(), positive(), along)
         .prop_map(|(viscosity, pressure_drop, along)| RequestedLeakage { viscosity, pressure_drop, along });
     let body = of(select(vec![LoadedBody::First, LoadedBody::Second]));
-    let stress = (vec(positive(), 1..4), of(positive()), body)
-        .prop_map(|(depths, yield_stress, body)| RequestedStress { depths, yield_stress, body });
+    let section = of(select(vec![FlowAxis::X, FlowAxis::Y]));
+    let stress = (vec(positive(), 1..4), of(positive()), body, section).prop_map(
+        |(depths, yield_stress, body, section)| RequestedStress { depths, yield_stress, body, section },
+    );
     let material = prop_oneof![
         positive().prop_map(FilmMaterial::Resistivity),
         positive().prop_map(FilmMaterial::Conductivity)
