@@ -199,8 +199,8 @@ struct FilmSystem {
     shift: f64,
 }
 
-/// Currents under a unit of the potential, and the bounds of their sum.
-struct Currents {
+/// SolvedFilm under a unit of the potential, and the bounds of their sum.
+struct SolvedFilm {
     current: Vec<f64>,
     lower: f64,
     upper: f64,
@@ -209,7 +209,7 @@ struct Currents {
 
 impl FilmSystem {
     /// Conjugate gradients until the bounds are within the tolerance.
-    fn solve(&mut self, tolerance: f64, stop: Stop<'_>) -> std::result::Result<Currents, Interrupted> {
+    fn solve(&mut self, tolerance: f64, stop: Stop<'_>) -> std::result::Result<SolvedFilm, Interrupted> {
         let n = self.cells.len();
         let mut x = vec![0.0; n];
         let (mut steps, mut before) = (0, f64::INFINITY);
@@ -225,7 +225,7 @@ impl FilmSystem {
             let aim = tolerance * (1.0 - self.shift * lower).clamp(0.0, 1.0);
             let stuck = steps > 0 && beyond > PROGRESS * before;
             if n == 0 || beyond <= aim * lower || stuck || steps >= STEPS {
-                return Ok(Currents { current: x, lower, upper: lower + beyond, steps });
+                return Ok(SolvedFilm { current: x, lower, upper: lower + beyond, steps });
             }
             before = beyond;
             steps += self.improve(&mut x, r, AIM * aim, stop)?;
