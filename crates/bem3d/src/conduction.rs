@@ -168,7 +168,7 @@ pub fn film_conductance_until(
         return Err(Error::domain(
             "conductance",
             lower,
-            "a finite number: nothing resists the current in full contact",
+            "a finite number: where nothing resists the current, as in full contact, there is none",
         ));
     }
     let mut density = vec![0.0; gap.values().len()];
@@ -199,7 +199,7 @@ struct FilmSystem {
     shift: f64,
 }
 
-/// SolvedFilm under a unit of the potential, and the bounds of their sum.
+/// Currents under a unit of the potential, and the bounds of their sum.
 struct SolvedFilm {
     current: Vec<f64>,
     lower: f64,
@@ -326,11 +326,10 @@ mod tests {
         for k in 0..n {
             let pivot = (k..n).max_by(|&i, &j| rows[i][k].abs().total_cmp(&rows[j][k].abs())).unwrap();
             rows.swap(k, pivot);
-            for i in k + 1..n {
-                let factor = rows[i][k] / rows[k][k];
-                for j in k..=n {
-                    rows[i][j] -= factor * rows[k][j];
-                }
+            let (above, below) = rows.split_at_mut(k + 1);
+            for row in below {
+                let factor = row[k] / above[k][k];
+                row.iter_mut().zip(&above[k]).for_each(|(a, b)| *a -= factor * b);
             }
         }
         let mut x = vec![0.0; n];

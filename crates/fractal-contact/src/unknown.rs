@@ -154,7 +154,7 @@ mod tests {
             ("press map.txt --young 1", "`--bodies"),
             ("press map.txt --E 210e9", "`--bodies"),
             ("press map.txt --output area", "did you mean `--outputs`?"),
-            ("press map.txt --leakage", "the leakage is requested by `leakage` in [outputs]"),
+            ("press map.txt --leakage", "the leakage is requested by `--set"),
             ("press map.txt --rms-height 1", "`--set 'scene.surface.rms_height=VALUE'`"),
             ("run scene.toml --mean-gap 1", "a scene says it itself, with `mean_gap` in [scene]"),
             ("press map.txt --nonsense 1", "`fractal-contact press --help` lists the flags"),

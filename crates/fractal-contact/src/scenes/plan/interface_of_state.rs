@@ -51,11 +51,14 @@ pub(crate) fn with_interface(
         leakage: flow.as_ref().map(|flow| flow.numbers),
         percolation: of_paths.map(|gap| paths(gap, boundary)).transpose()?,
         stress: stressed.as_ref().map(|(largest, _)| *largest),
-        film: requested
-            .film
-            .zip(gap.as_ref())
-            .map(|(of, gap)| film_of(scene, numerics, (gap, of), stop))
-            .transpose()?,
+        film: match requested.film.zip(gap.as_ref()) {
+            // Full contact of a periodic map has no resistance, and so no conductance.
+            Some((_, gap)) if boundary == Boundary::Periodic && gap.values().iter().all(|g| *g <= 0.0) => {
+                None
+            }
+            Some((of, gap)) => Some(film_of(scene, numerics, (gap, of), stop)?),
+            None => None,
+        },
         gap_error,
     };
     let mut fields = state.fields.take().unwrap_or_default();

@@ -195,17 +195,17 @@ const TABLE: &[OtherWords] = &[
         ("outputs", "leakage"),
         &["leakage", "leak", "flow", "permeability", "seal"],
         "the leakage is requested by `leakage = { viscosity = \"1 mPa s\", pressure_drop = \"1 bar\", along = \"x\" }` in [outputs]",
-        "the leakage is requested by `leakage` in [outputs] of a scene: `fractal-contact new seal.toml --from seal` writes one",
+        "the leakage is requested by `--set 'outputs.leakage={ viscosity = \"1 mPa s\", pressure_drop = \"1 bar\", along = \"x\" }'`",
     ),
     key(
         ("outputs", "percolation"),
         &["percolation", "percolates", "threshold", "constriction"],
         "paths through the gap, and their narrowest place, are requested by `percolation = true` in [outputs]",
-        "paths through the gap are requested by `percolation = true` in [outputs] of a scene",
+        "paths through the gap are requested by `--set outputs.percolation=true`",
     ),
     nothing(
         &["lubrication", "lubricant", "oil", "fluid", "viscosity_of_oil", "film_thickness"],
-        "no lubricant is computed, contacts are dry: `gap = [\"npy\"]` in [outputs] writes the gap of the dry contact",
+        "no lubrication is computed, a fluid does not lift the bodies: `leakage` in [outputs] is its flow through the gap of the dry contact",
     ),
     nothing(
         &["wear", "archard", "wear_coefficient", "wear_rate"],
@@ -216,13 +216,17 @@ const TABLE: &[OtherWords] = &[
         "no temperature is computed: `conductance = { kind = \"thermal\", conductivities = [...] }` in [outputs] is the thermal conductance, and \
          the column `dissipated` the energy that friction takes",
     ),
-    nothing(
+    key(
+        ("effects", "layer"),
         &["coating", "layer", "layers", "thickness", "substrate", "film_on_substrate"],
-        "no coating is computed: bodies are half-spaces, each of one material",
+        "a coating, or a layer of finite thickness, is `layer = { thickness = \"2 um\", young = \"400 GPa\", poisson = 0.2, base = { young = \"210 GPa\", poisson = 0.3 } }` in [effects]",
+        "a coating, or a layer of finite thickness, is `layer` in [effects] of a scene",
     ),
-    nothing(
+    key(
+        ("outputs", "stress_below"),
         &["stress_below", "subsurface", "von_mises", "subsurface_stress", "mises"],
-        "no stress below the surface is computed: `pressure = [\"npy\"]` in [outputs] is the load on the surface from which it follows",
+        "the largest stress below the surface is requested by `stress_below = { depths = [\"1 um\", \"2 um\", \"5 um\"] }` in [outputs]",
+        "the largest stress below the surface is requested by `--set 'outputs.stress_below={ depths = [\"1 um\", \"2 um\", \"5 um\"] }'`",
     ),
     nothing(
         &["velocity", "speed", "sliding_speed", "frequency"],
