@@ -114,14 +114,23 @@ mod tests {
                 scene.request = LoadRequest::Path(vec![Step::new(0.0, Load::force(1.0)).into(); 2]);
             }
             AskedBy::All(each) => each.iter().for_each(|asked| ask(scene, *asked)),
-            AskedBy::PeriodicBoundary => effects.boundary = Boundary::Periodic,
+            AskedBy::PeriodicBoundary => {
+                effects.boundary = Boundary::Periodic;
+                scene.request = periodic_load();
+            }
             AskedBy::WholeLayer => {
                 let layer = Layer { thickness: 1.0, young: 1.0, poisson: 0.3, base: LayerBase::Rigid };
                 (effects.layer, effects.boundary) = (Some(layer), Boundary::Periodic);
+                scene.request = periodic_load();
             }
             AskedBy::Always | AskedBy::RoughSurface | AskedBy::FreeBoundary | AskedBy::PrescribedDistance => {
             }
         }
+    }
+
+    /// A load of a periodic contact, which has no approach.
+    fn periodic_load() -> LoadRequest {
+        LoadRequest::Loads(LoadList { kind: PrescribedLoad::Force, values: vec![1.0] })
     }
 
     /// Every quantity that a scene requests is in its CSV, in the tables of the console and of the report, in
