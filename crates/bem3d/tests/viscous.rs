@@ -314,12 +314,16 @@ fn what_has_no_answer_is_refused() {
     coated.effects.layer = Some(Layer { thickness: 0.1, young: MODULUS * 0.91, poisson: 0.3, base });
     assert!(refused(&coated, force).contains("relax as the layer does"));
     let bodies = Pair {
-        first: Body::Elastic { young: 2.0 * MODULUS, poisson: 0.0 },
-        second: Body::Elastic { young: 2.0 * MODULUS, poisson: 0.0 },
+        first: Body::Elastic { young: 1.5 * MODULUS, poisson: 0.0 },
+        second: Body::Elastic { young: 3.0 * MODULUS, poisson: 0.0 },
     };
     let mut two = scene(ball(), Boundary::Free, &SOLID);
     two.pair = Some(bodies);
     assert!(refused(&two, force).contains("one has to be rigid"));
+    let same = Body::Elastic { young: 2.0 * MODULUS, poisson: 0.0 };
+    two.pair = Some(Pair { first: same, second: same });
+    two.effects.rheology = Rheology::Maxwell { viscosity: 1.0 };
+    assert!(refused(&two, force).contains("a viscosity of two bodies"));
     let tolerance = Bem3d { time_tolerance: 0.0, ..MODEL };
     assert!(tolerance.prepare(&scene(ball(), Boundary::Free, &SOLID), 0).is_err());
 }
@@ -488,6 +492,26 @@ fn tractions_relax_as_pressures_do() {
         assert_relative_eq!(of(state).stick_area.unwrap(), first.stick_area.unwrap());
         assert_relative_eq!(of(state).dissipated, first.dissipated, max_relative = 1e-6);
         assert!(state.viscoelastic.unwrap().tangential_time_errors.unwrap()[0] < 1e-6);
+    }
+}
+
+/// Two bodies of one material have one function of time: they are as one of half the modulus under a rigid body, also
+/// with friction.
+#[test]
+fn two_bodies_of_one_material_relax_together() {
+    let one = sliding(&SOLID, 0.3);
+    let rubber = Body::Elastic { young: 1.5 * MODULUS, poisson: 0.5 };
+    let mut two = Scene::of_pair(ball(), Pair { first: rubber, second: rubber }).unwrap();
+    (two.effects, two.outputs) = (one.effects, one.outputs);
+    let steps = [(0.0, pushed(0.01, 0.0)), (1.0, pushed(0.02, 0.003)), (9.0, pushed(0.02, 0.001))];
+    let numbers = |state: &ContactState| {
+        let tangential = state.tangential.unwrap();
+        [state.approach.unwrap(), tangential.displacement[0], tangential.dissipated, state.area.unwrap()]
+    };
+    for (a, b) in history(&MODEL, &one, &steps).iter().zip(&history(&MODEL, &two, &steps)) {
+        for (a, b) in numbers(a).into_iter().zip(numbers(b)) {
+            assert_relative_eq!(a, b, max_relative = 1e-9, epsilon = 1e-15);
+        }
     }
 }
 

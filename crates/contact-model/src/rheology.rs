@@ -86,25 +86,42 @@ impl Rheology {
         }
     }
 
-    /// Checks that two bodies are a rigid one and one that deforms, whose viscosities mean what they say.
+    /// Checks that one function of time holds for all that deforms: one body beside a rigid one, or two of one material;
+    /// and that viscosities mean what they say.
     ///
     /// # Errors
-    /// [`Error::Unsupported`] by `model` for two bodies that deform; [`Error::Domain`] for a viscosity of a material
-    /// that is not incompressible.
+    /// [`Error::Unsupported`] by `model` for two bodies of different materials, which would relax each in its own way,
+    /// and for a viscosity of two bodies; [`Error::Domain`] for a viscosity of a material that is not incompressible.
     pub fn check_pair(&self, pair: &Pair, model: &'static str) -> Result<()> {
-        /// A Poisson's ratio may have been rounded.
+        /// Numbers of a material may have been rounded.
         const SAME: f64 = 1e-9;
-        let (Pair { first: Body::Rigid, second: body } | Pair { first: body, second: Body::Rigid }) = pair
-        else {
-            return Err(Error::unsupported(model, "two bodies that deform (one has to be rigid)"));
+        let is_viscosity = matches!(self, Self::KelvinVoigt { .. } | Self::Maxwell { .. });
+        let body = match (pair.first, pair.second) {
+            (Body::Rigid, body) | (body, Body::Rigid) => body,
+            (
+                Body::Elastic { young: first, poisson: nu_first },
+                Body::Elastic { young: second, poisson: nu_second },
+            ) => {
+                let is_one_material =
+                    (first / second - 1.0).abs() <= SAME && (nu_first - nu_second).abs() <= SAME;
+                if is_one_material && !is_viscosity {
+                    return Ok(());
+                }
+                let what = if is_one_material {
+                    "a viscosity of two bodies, which is that of one (take a standard solid or a Prony series)"
+                } else {
+                    "a rheology of two bodies of different materials, which would relax each in its own way \
+                     (one has to be rigid, or both of one material)"
+                };
+                return Err(Error::unsupported(model, what));
+            }
+            (body, _) => body,
         };
-        match (body, self) {
-            (Body::Elastic { poisson, .. }, Self::KelvinVoigt { .. } | Self::Maxwell { .. })
-                if (poisson - 0.5).abs() > SAME =>
-            {
+        match body {
+            Body::Elastic { poisson, .. } if is_viscosity && (poisson - 0.5).abs() > SAME => {
                 let expected =
                     "1/2, for which viscosities are meant (a standard solid or Prony series has none)";
-                Err(Error::domain("poisson", *poisson, expected))
+                Err(Error::domain("poisson", poisson, expected))
             }
             _ => Ok(()),
         }

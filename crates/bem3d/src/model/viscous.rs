@@ -148,7 +148,7 @@ fn is_pull_off<T>(found: &Result<T>) -> bool {
 /// Refuses what a viscoelastic contact does not have.
 ///
 /// # Errors
-/// [`Error::Unsupported`] for a stiffness, a conductance, two bodies that deform, a layer on another material and
+/// [`Error::Unsupported`] for a stiffness, a conductance, bodies of two materials, a layer on another material and
 /// friction that displaces normally too.
 pub(super) fn check_rheology(scene: &Scene) -> Result<()> {
     let rheology = &scene.effects.rheology;
