@@ -115,7 +115,6 @@ impl Rheology {
                 };
                 return Err(Error::unsupported(model, what));
             }
-            (body, _) => body,
         };
         match body {
             Body::Elastic { poisson, .. } if is_viscosity && (poisson - 0.5).abs() > SAME => {
