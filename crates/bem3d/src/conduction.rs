@@ -1,6 +1,6 @@
 //! Conduction from one body to the other through the contact and through a film in the gap around it.
 //!
-//! What does a film that fills the gap add to the conductance of a contact? Where the surfaces touch, a current
+//! How much better does a contact conduct if a film fills the gap around it? Where the surfaces touch, a current
 //! passes without resistance; elsewhere it crosses a film of the thickness of the gap. Both share the potential in
 //! the bodies, so that the film cannot be counted as a conductor in parallel: on fine grids the cells beside the
 //! contact, whose gaps are as small as one likes, would conduct without limit.
@@ -36,7 +36,7 @@ use crate::operator::Operators;
 use crate::parts::Recorder;
 use crate::real::{dot, sum, sum_of_pairs, update};
 use crate::tuning::Tuning;
-use contact_model::{Boundary, Error, Field, HeightMap, Interrupted, Result, Stop, never};
+use contact_model::{Boundary, Error, Field, Interrupted, Result, Stop, never};
 use std::f64::consts::TAU;
 
 /// Steps of conjugate gradients at most; the bounds are then as wide as they are.
@@ -51,7 +51,7 @@ const AIM: f64 = 0.1;
 /// Rounds end where one of them leaves more than this share of the width: rounding is then all that is left.
 const PROGRESS: f64 = 0.5;
 
-/// What conducts beside the contact.
+/// The resistivities of a film in the gap and of the bodies on both sides of it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Film {
     /// Resistivity of the film, > 0: resistance times length, or length and temperature over power for heat.
@@ -66,7 +66,7 @@ pub struct FilmConductance {
     /// Lower bound of the current per potential difference: of the sample with free boundaries; with periodic ones of
     /// the interface alone, whose resistance adds to that of the bodies above and below it.
     pub lower: f64,
-    /// Upper bound; infinite for an interface without any resistance.
+    /// Upper bound.
     pub upper: f64,
     /// Current density in each cell for a potential difference of 1 between the bodies: between points far away with
     /// free boundaries, with periodic ones between the planes to which their own resistance is counted.
@@ -107,8 +107,8 @@ pub fn film_conductance(gap: &Field, film: Film, boundary: Boundary) -> Result<F
 /// ```
 ///
 /// # Errors
-/// [`Error::Domain`] for gaps that are negative or not numbers, resistivities that are not positive and numbers beyond
-/// the range of f64; [`Error::Unsupported`] for a map that repeats along one axis only; [`Error::Stopped`].
+/// [`Error::Domain`] for gaps that are negative or not numbers, resistivities and a tolerance that are not positive, an
+/// interface without resistance, and numbers beyond the range of f64; [`Error::Unsupported`] for a map that repeats along one axis only; [`Error::Stopped`].
 pub fn film_conductance_until(
     gap: &Field,
     film: Film,
@@ -117,7 +117,11 @@ pub fn film_conductance_until(
     stop: Stop<'_>,
 ) -> Result<FilmConductance> {
     let Film { resistivity, bodies } = film;
-    for (name, value) in [("resistivity of the film", resistivity), ("resistivity of both bodies", bodies)] {
+    for (name, value) in [
+        ("resistivity of the film", resistivity),
+        ("resistivity of both bodies", bodies),
+        ("tolerance", tolerance),
+    ] {
         if !(value.is_finite() && value > 0.0) {
             return Err(Error::of_positive(name, value));
         }
@@ -128,8 +132,7 @@ pub fn film_conductance_until(
     if let Some(wrong) = gap.values().iter().find(|g| g.is_nan() || **g < 0.0) {
         return Err(Error::domain("gap", *wrong, "numbers of at least 0"));
     }
-    let map = HeightMap::new(gap.cells(), gap.size(), vec![0.0; gap.values().len()])?;
-    let grid = Grid::of(&map);
+    let grid = Grid::of_cells(gap.cells(), gap.dx(), gap.dy());
     // Resistances are counted in that of the bodies for a unit of G, lengths in the mean side of a cell.
     let length = gap.dx().sqrt() * gap.dy().sqrt();
     let unit = bodies * length / TAU;
@@ -164,10 +167,10 @@ pub fn film_conductance_until(
         }
     };
     let (lower, upper) = (of_interface(found.lower), of_interface(found.upper));
-    if !lower.is_finite() {
+    if !upper.is_finite() {
         return Err(Error::domain(
             "conductance",
-            lower,
+            upper,
             "a finite number: where nothing resists the current, as in full contact, there is none",
         ));
     }
@@ -424,6 +427,8 @@ mod tests {
             // Full contact of periodic bodies has no resistance.
             (gap(0.0), film, Boundary::Periodic),
             (gap(1e300), Film { resistivity: 1e300, ..film }, Boundary::Free),
+            // So thin a film resists less than rounding.
+            (gap(1e-300), film, Boundary::Periodic),
         ] {
             assert!(film_conductance(&gap, film, boundary).is_err(), "{gap:?} {film:?} {boundary:?}");
         }
@@ -432,6 +437,9 @@ mod tests {
         assert!(square.lower > 2.0 && square.upper < 2.6, "{square:?}");
         let nothing = film_conductance(&gap(f64::INFINITY), film, Boundary::Periodic).unwrap();
         assert_eq!((nothing.lower, nothing.upper), (0.0, 0.0));
+        for tolerance in [0.0, -1.0, f64::NAN] {
+            assert!(film_conductance_until(&gap(1.0), film, Boundary::Free, tolerance, &never).is_err());
+        }
         assert!(matches!(
             film_conductance_until(&gap(1.0), film, Boundary::Free, 1e-8, &|| true),
             Err(Error::Stopped { .. })

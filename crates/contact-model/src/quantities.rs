@@ -181,7 +181,7 @@ pub enum InterfaceOutput {
     Film,
     /// Conduction of this film between opposite edges.
     FilmAlong,
-    /// The gap of each cell, which leakage, paths and a film need.
+    /// The gap of each cell with its error, which leakage and paths need.
     Gap,
 }
 

@@ -244,7 +244,7 @@ fn a_scene_conducts_through_its_film() {
     }
 }
 
-/// What is read off the fields is compared with the same of coarser grids, whose error it then has.
+/// Leakage and stress of the same load on coarser grids give the error of the grid of both.
 #[test]
 fn grids_are_compared_in_leakage_and_stress() {
     let directory = tempfile::tempdir().unwrap();

@@ -1,7 +1,7 @@
 //! The grid of cells, rectangular windows of it, and lengths of transforms.
 
 use crate::tuning::Tuning;
-use contact_model::HeightMap;
+use contact_model::{Cells, HeightMap};
 use numerics::fourier::fast_length;
 
 /// Rounding of the ratio of two sides.
@@ -27,10 +27,15 @@ impl Grid {
 
     /// The grid of a map.
     pub fn of(map: &HeightMap) -> Self {
-        let aspect = map.dx() / map.dy();
+        Self::of_cells(map.cells(), map.dx(), map.dy())
+    }
+
+    /// The grid of cells with these sides.
+    pub fn of_cells(cells: Cells, dx: f64, dy: f64) -> Self {
+        let aspect = dx / dy;
         // A ratio that misses 1 by rounding is a square cell.
         let stretch = if (aspect - 1.0).abs() < ROUNDING { 1.0 } else { aspect.sqrt() };
-        Self { columns: map.columns(), rows: map.rows(), stretch }
+        Self { columns: cells.columns, rows: cells.rows, stretch }
     }
 
     /// Number of cells.

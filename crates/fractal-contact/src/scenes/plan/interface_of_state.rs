@@ -156,8 +156,7 @@ fn film_of(
     let along = of.along.map(|axis| -> Result<(f64, f64)> {
         let mut sheet = gap.clone();
         for conductivity in sheet.values_mut() {
-            // Nothing conducts at an undefined point, whose gap is infinite.
-            *conductivity = if conductivity.is_finite() { *conductivity / resistivity } else { 0.0 };
+            *conductivity /= resistivity;
         }
         let options = FlowOptions { continuum: false, ..FlowOptions::default() };
         let FlowBounds { lower, upper } = conductance_until(&sheet, axis, boundary, options, stop)?.network;

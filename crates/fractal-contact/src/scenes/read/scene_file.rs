@@ -825,9 +825,13 @@ fn check_interface(scene: &SceneFile, places: &Places) -> ReadResult<()> {
         }
     }
     let undefined = scene.surface.given_map().map_or(0, |map| map.undefined());
-    if requested.leakage.is_some() && undefined > 0 {
-        let message = format!("the flow through a map with {undefined} undefined points is not known");
-        return refused("leakage", message, "fill them with `fill` in [scene.surface], or crop the map");
+    for (key, is_requested) in [("leakage", requested.leakage.is_some()), ("film", requested.film.is_some())]
+    {
+        if is_requested && undefined > 0 {
+            let message =
+                format!("`{key}` of a map with {undefined} undefined points, whose gap is not known");
+            return refused(key, message, "fill them with `fill` in [scene.surface], or crop the map");
+        }
     }
     if scene.surface.is_profile() && !requested.outputs().is_empty() {
         let key = requested.outputs()[0].key();
