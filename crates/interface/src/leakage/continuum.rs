@@ -16,6 +16,11 @@
 //! lowest order). A cell with the currents a and b over opposite faces dissipates `(a^2 + a b + b^2)/(3 k)`
 //! times the ratio of sides. In the network it dissipates `(a^2 + b^2)/(2 k)`, which is not less. The network
 //! therefore underestimates the conductance of the continuum, and this bound is the better one of the two.
+//!
+//! Circulations lower the dissipation further: a current around a corner between open cells flows over the
+//! faces that meet there and adds nothing to what a cell takes in or gives out. Their strengths are a stream
+//! function, bilinear in each cell, of which `1/k` is the conductivity. The same conjugate gradients find
+//! them. Corners of closed cells and of impermeable sides have none.
 
 use super::currents::{Currents, Dissipation};
 use super::gradients::{Potential, solve};
@@ -23,6 +28,7 @@ use super::graph::Graph;
 use super::multigrid::Hierarchy;
 use super::network::{CellNetwork, NONE, PotentialEnergy, SINK, SOURCE};
 use contact_model::{Result, Stop, check_stop};
+use numerics::sum::Sum;
 use std::sync::Arc;
 
 /// Reduction of the squared residual in one round.
@@ -38,12 +44,17 @@ const ROUNDS: usize = 8;
 /// Corners of a cell: two before it along the axis, then two behind it.
 type CellCorners = [u32; 4];
 
-/// The cells of a network with the unknown potentials at their corners.
+/// Differences along the axis at both places of a cell, and across it in both layers.
+type Differences = [[f64; 2]; 2];
+
+/// The cells of a network with unknowns at their corners: potentials, or values of a stream function.
 #[derive(Debug)]
-struct BilinearCells<'a> {
-    network: &'a CellNetwork,
-    conductivity: &'a [f64],
-    /// Unknowns at the corners of each node's cell; [`SOURCE`] or [`SINK`] where the potential is known.
+struct BilinearCells {
+    /// Sides of a cell along the axis and across it.
+    sides: [f64; 2],
+    /// Of the cell of each node.
+    conductivity: Vec<f64>,
+    /// Unknowns at the corners of each node's cell; [`SOURCE`] or [`SINK`] where the value is known.
     corners: Vec<CellCorners>,
     unknowns: usize,
 }
@@ -56,21 +67,38 @@ struct CornerWeights {
     diagonal: f64,
 }
 
-/// The bound from below. Cost: O(N).
-pub(super) fn lower_bound(network: &CellNetwork, conductivity: &[f64], currents: &Currents<'_>) -> f64 {
-    let [side_along, side_across] = network.layers.sides;
-    let mut dissipation = Dissipation::default();
-    for (node, &cell) in network.cells.iter().enumerate() {
-        let [before, behind, up, down] = currents.over_faces(node);
-        let resistivity = 1.0 / conductivity[cell as usize];
-        for ([a, b], ratio) in
-            [([-before, behind], side_across / side_along), ([-up, down], side_along / side_across)]
-        {
-            let resistance = ratio * resistivity;
-            dissipation.add(resistance / 3.0 * (a * a + a * b + b * b), a.abs() + b.abs(), resistance);
-        }
+/// The bound from below, and the steps of conjugate gradients that it took.
+///
+/// # Errors
+/// [`contact_model::Error::Stopped`].
+pub(super) fn lower_bound(
+    network: &CellNetwork,
+    conductivity: &[f64],
+    currents: &Currents<'_>,
+    stop: Stop<'_>,
+) -> Result<(f64, usize)> {
+    let cells = BilinearCells::of_stream_function(network, conductivity);
+    let of_network: Vec<Differences> = (0..network.cells.len())
+        .map(|node| {
+            let [before, behind, up, down] = currents.over_faces(node);
+            [[before, -behind], [-up, down]]
+        })
+        .collect();
+    let lower = cells.bound_of_flux(&of_network, &[], currents);
+    check_stop(stop)?;
+    if cells.unknowns == 0 {
+        return Ok((lower, 0));
     }
-    dissipation.conductance(currents)
+    let graph = cells.graph(cells.exact());
+    // The currents of the network are off near corners alone: few steps from neighbour to neighbour do, and
+    // further ones gain nearly nothing.
+    let scale: Vec<f64> = graph.diagonal().iter().map(|d| 1.0 / d).collect();
+    let precondition = |residual: &[f64], z: &mut [f64]| {
+        z.iter_mut().zip(residual).zip(&scale).for_each(|((z, residual), scale)| *z = residual * scale);
+    };
+    let residual = cells.residual(|node| of_network[node]);
+    let circulation = solve(&graph, precondition, residual, REDUCTION, stop)?;
+    Ok((lower.max(cells.bound_of_flux(&of_network, &circulation.x, currents)), circulation.steps))
 }
 
 /// The bound from above, and the steps of conjugate gradients that it took; `lower` is the bound from below
@@ -85,7 +113,7 @@ pub(super) fn upper_bound(
     lower: f64,
     stop: Stop<'_>,
 ) -> Result<(f64, usize)> {
-    let cells = BilinearCells::new(network, conductivity);
+    let cells = BilinearCells::of_potential(network, conductivity);
     let mut potential = cells.mean_of_centres(centres);
     let mut upper = cells.energy(&potential);
     check_stop(stop)?;
@@ -95,8 +123,9 @@ pub(super) fn upper_bound(
     let mut hierarchy = Hierarchy::new(Arc::new(cells.graph(cells.lumped())), stop)?;
     let (graph, mut steps) = (cells.graph(cells.exact()), 0);
     for _ in 0..ROUNDS {
-        let residual = cells.residual(&potential);
-        let correction = solve(&graph, &mut hierarchy, residual, REDUCTION, stop)?;
+        let residual = cells.residual(|node| cells.differences(node, &potential));
+        let precondition = |residual: &[f64], z: &mut [f64]| hierarchy.apply(residual, z);
+        let correction = solve(&graph, precondition, residual, REDUCTION, stop)?;
         steps += correction.steps;
         let mut next = potential.clone();
         next.add(&correction.x);
@@ -112,32 +141,21 @@ pub(super) fn upper_bound(
     Ok((upper, steps))
 }
 
-impl<'a> BilinearCells<'a> {
-    /// Cost: O(N).
-    fn new(network: &'a CellNetwork, conductivity: &'a [f64]) -> Self {
+impl BilinearCells {
+    /// Unknown potentials. Cost: O(N).
+    fn of_potential(network: &CellNetwork, conductivity: &[f64]) -> Self {
         let layers = &network.layers;
-        let width = if layers.wraps { layers.width } else { layers.width + 1 };
-        let strides = if layers.strides[0] == 1 { [1, layers.count + 1] } else { [width, 1] };
-        let is_node = |layer: isize, place: isize| {
-            layers.beside(layer, place).is_some_and(|cell| network.node_of[cell] != NONE)
-        };
-        let mut first = vec![NONE; (layers.count + 1) * width];
+        let mut unknowns = 0;
         // Corners at which two cells touch that share no other cell there. A point carries no flow, so that
         // each of them has a potential of its own.
-        let mut is_split = vec![false; first.len()];
-        let mut unknowns = 0;
-        for corner in 0..first.len() {
-            let (layer, place) = if strides[0] == 1 {
-                (corner % (layers.count + 1), corner / (layers.count + 1))
-            } else {
-                (corner / width, corner % width)
-            };
+        let mut is_split = vec![false; network.corners()];
+        let mut first = vec![NONE; is_split.len()];
+        for (corner, [layer, place]) in network.places_of_corners() {
             if layer == 0 || layer == layers.count {
                 first[corner] = if layer == 0 { SOURCE } else { SINK };
                 continue;
             }
-            let (layer, place) = (layer.cast_signed(), place.cast_signed());
-            let around = [(-1, -1), (-1, 0), (0, -1), (0, 0)].map(|(l, p)| is_node(layer + l, place + p));
+            let around = network.around_corner(layer, place).map(|node| node == Some(true));
             if around.contains(&true) {
                 first[corner] = unknowns;
                 unknowns += 1;
@@ -147,20 +165,51 @@ impl<'a> BilinearCells<'a> {
                 unknowns += 1;
             }
         }
+        let of_corner = |corner: usize, l: usize| first[corner] + u32::from(is_split[corner] && l == 0);
+        let own = network.cells.iter().map(|&cell| conductivity[cell as usize]).collect();
+        Self::new(network, own, of_corner, unknowns)
+    }
+
+    /// Unknown circulations around the corners of which all cells carry a flow. Cost: O(N).
+    fn of_stream_function(network: &CellNetwork, conductivity: &[f64]) -> Self {
+        let layers = &network.layers;
+        let mut unknowns = 0;
+        let mut of_corner = vec![SINK; network.corners()];
+        for (corner, [layer, place]) in network.places_of_corners() {
+            let at_side = !layers.wraps && (place == 0 || place == layers.width);
+            let closed = network.around_corner(layer, place).contains(&Some(false));
+            if !at_side && !closed {
+                of_corner[corner] = unknowns;
+                unknowns += 1;
+            }
+        }
+        // The same circulation around all corners is none: where all are unknown, one of them becomes known.
+        if unknowns as usize == of_corner.len() {
+            unknowns -= 1;
+            of_corner[unknowns as usize] = SINK;
+        }
+        let own = network.cells.iter().map(|&cell| 1.0 / conductivity[cell as usize]).collect();
+        Self::new(network, own, |corner, _| of_corner[corner], unknowns)
+    }
+
+    /// `unknown` names that of a corner for a cell of the layer before it (0) or behind it (1).
+    fn new(
+        network: &CellNetwork,
+        conductivity: Vec<f64>,
+        unknown: impl Fn(usize, usize) -> u32,
+        unknowns: u32,
+    ) -> Self {
         let corners = network.cells.iter().map(|&cell| {
-            let [layer, place] = layers.place(cell as usize);
-            [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(l, p)| {
-                let corner = (layer + l) * strides[0] + (place + p) % width * strides[1];
-                first[corner] + u32::from(is_split[corner] && l == 0)
-            })
+            let [layer, place] = network.layers.place(cell as usize);
+            [(0, 0), (0, 1), (1, 0), (1, 1)].map(|(l, p)| unknown(network.corner(layer + l, place + p), l))
         });
-        let corners = corners.collect();
-        Self { network, conductivity, corners, unknowns: unknowns as usize }
+        let (corners, sides) = (corners.collect(), network.layers.sides);
+        Self { sides, conductivity, corners, unknowns: unknowns as usize }
     }
 
     /// Ratios of sides by which differences along the axis and across it count.
     fn ratios(&self) -> [f64; 2] {
-        let [along, across] = self.network.layers.sides;
+        let [along, across] = self.sides;
         [across / along, along / across]
     }
 
@@ -179,11 +228,6 @@ impl<'a> BilinearCells<'a> {
     fn lumped(&self) -> CornerWeights {
         let [along, across] = self.ratios();
         CornerWeights { along: 0.5 * along, across: 0.5 * across, diagonal: 0.0 }
-    }
-
-    /// Conductivity of a node's cell.
-    fn conductivity_of(&self, node: usize) -> f64 {
-        self.conductivity[self.network.cells[node] as usize]
     }
 
     /// The cells around each unknown, as `4 node + corner`: where they begin, and one after the other.
@@ -219,7 +263,7 @@ impl<'a> BilinearCells<'a> {
                 for other in (0..4).filter(|&other| other != own) {
                     // Corners differ in their place, in their layer, or in both.
                     let weight = [0.0, weights.across, weights.along, weights.diagonal][own ^ other];
-                    let weight = weight * self.conductivity_of(node);
+                    let weight = weight * self.conductivity[node];
                     let to = self.corners[node][other];
                     if to as usize >= self.unknowns {
                         ground += weight;
@@ -247,7 +291,7 @@ impl<'a> BilinearCells<'a> {
         for (node, corners) in self.corners.iter().enumerate() {
             for &corner in corners {
                 if let Some(total) = weights.get_mut(corner as usize) {
-                    let weight = self.conductivity_of(node);
+                    let weight = self.conductivity[node];
                     *total += weight;
                     potential.high[corner as usize] += weight * centres.high[node];
                 }
@@ -268,8 +312,7 @@ impl<'a> BilinearCells<'a> {
         }
     }
 
-    /// Differences along the axis at both places, and across it in both layers.
-    fn differences(&self, node: usize, potential: &Potential) -> [[f64; 2]; 2] {
+    fn differences(&self, node: usize, potential: &Potential) -> Differences {
         let [a, b, c, d] = self.corners[node];
         let above = |from, to| self.above(potential, to, from);
         [[above(a, c), above(b, d)], [above(a, b), above(c, d)]]
@@ -279,7 +322,7 @@ impl<'a> BilinearCells<'a> {
     fn energy(&self, potential: &Potential) -> f64 {
         let mut energy = PotentialEnergy::default();
         for node in 0..self.corners.len() {
-            let conductivity = self.conductivity_of(node);
+            let conductivity = self.conductivity[node];
             for ([a, b], ratio) in self.differences(node, potential).into_iter().zip(self.ratios()) {
                 let weight = ratio * conductivity;
                 energy.add(weight / 3.0 * (a * a + a * b + b * b), weight);
@@ -288,18 +331,45 @@ impl<'a> BilinearCells<'a> {
         energy.bound()
     }
 
-    /// The negative gradient of half of the energy.
-    fn residual(&self, potential: &Potential) -> Vec<f64> {
+    /// The bound from below that currents prove, given for each cell as differences of a stream function,
+    /// together with circulations around corners.
+    fn bound_of_flux(&self, of_network: &[Differences], circulation: &[f64], currents: &Currents<'_>) -> f64 {
+        let value = |corner: u32| circulation.get(corner as usize).copied().unwrap_or(0.0);
+        // A current with its rounding, which does not become smaller where a circulation cancels the current.
+        let with = |current: f64, to: f64, from: f64| {
+            let mut sum = Sum::from(current);
+            sum.add(to);
+            sum.add(-from);
+            (sum.value(), f64::EPSILON * current.abs())
+        };
+        let mut dissipation = Dissipation::default();
+        for (node, corners) in self.corners.iter().enumerate() {
+            let [a, b, c, d] = corners.map(value);
+            let [[before, behind], [up, down]] = of_network[node];
+            let flux = [[with(before, c, a), with(behind, d, b)], [with(up, b, a), with(down, d, c)]];
+            for ([(a, of_a), (b, of_b)], ratio) in flux.into_iter().zip(self.ratios()) {
+                let resistance = ratio * self.conductivity[node];
+                let rounding =
+                    of_a * (2.0 * a.abs() + b.abs() + of_a + of_b) + of_b * (a.abs() + 2.0 * b.abs() + of_b);
+                let power = a * a + a * b + b * b + rounding;
+                dissipation.add(resistance / 3.0 * power, a.abs() + b.abs(), resistance);
+            }
+        }
+        dissipation.conductance(currents)
+    }
+
+    /// The negative gradient of half of the energy of these differences.
+    fn residual(&self, differences: impl Fn(usize) -> Differences) -> Vec<f64> {
         let mut residual = vec![0.0; self.unknowns];
         for (node, &[a, b, c, d]) in self.corners.iter().enumerate() {
-            let conductivity = self.conductivity_of(node);
+            let conductivity = self.conductivity[node];
             let mut pull = |corner: u32, force: f64| {
                 if let Some(residual) = residual.get_mut(corner as usize) {
                     *residual += force;
                 }
             };
             let sides = [[(a, c), (b, d)], [(a, b), (c, d)]];
-            let differences = self.differences(node, potential);
+            let differences = differences(node);
             for ((sides, differences), ratio) in sides.into_iter().zip(differences).zip(self.ratios()) {
                 let weight = ratio * conductivity / 6.0;
                 for (i, (from, to)) in sides.into_iter().enumerate() {

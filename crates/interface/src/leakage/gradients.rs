@@ -1,7 +1,6 @@
 //! Conjugate gradients, whose solution is held in more than double precision.
 
 use super::graph::Graph;
-use super::multigrid::Hierarchy;
 use super::vectors::{combine, dot};
 use contact_model::{Result, Stop, check_stop};
 
@@ -62,7 +61,8 @@ pub(super) struct SolvedPotential {
     pub steps: usize,
 }
 
-/// Solves `A x = right` by flexible conjugate gradients until `r' M r` is `reduction` of what it was.
+/// Solves `A x = right` by flexible conjugate gradients until `r' M r` is `reduction` of what it was;
+/// `precondition` writes `M r` of a residual r.
 ///
 /// The directions are made conjugate to the last one explicitly, because the preconditioner is not exactly
 /// linear (Notay, SIAM J. Sci. Comput. 22, 1444 (2000)).
@@ -71,7 +71,7 @@ pub(super) struct SolvedPotential {
 /// [`contact_model::Error::Stopped`].
 pub(super) fn solve(
     graph: &Graph,
-    hierarchy: &mut Hierarchy,
+    mut precondition: impl FnMut(&[f64], &mut [f64]),
     right: Vec<f64>,
     reduction: f64,
     stop: Stop<'_>,
@@ -84,7 +84,7 @@ pub(super) fn solve(
     let mut energy = 0.0;
     for step in 0..LARGEST_STEPS {
         check_stop(stop)?;
-        hierarchy.apply(&residual, &mut z);
+        precondition(&residual, &mut z);
         let product = dot(&residual, &z);
         if step == 0 {
             start = product;

@@ -123,6 +123,48 @@ impl CellNetwork {
         Self { layers, node_of, cells, graph: std::sync::Arc::new(graph), edges }
     }
 
+    /// Number of corners of all cells.
+    pub fn corners(&self) -> usize {
+        (self.layers.count + 1) * self.corners_in_layer()
+    }
+
+    fn corners_in_layer(&self) -> usize {
+        self.layers.width + usize::from(!self.layers.wraps)
+    }
+
+    /// The corner before a layer and a place; corners follow each other as cells do in memory.
+    pub fn corner(&self, layer: usize, place: usize) -> usize {
+        let width = self.corners_in_layer();
+        if self.layers.strides[0] == 1 {
+            layer + place % width * (self.layers.count + 1)
+        } else {
+            layer * width + place % width
+        }
+    }
+
+    /// All corners, each with the layer and the place that it is before.
+    pub fn places_of_corners(&self) -> impl Iterator<Item = (usize, [usize; 2])> {
+        let (layers, width) = (self.layers.count + 1, self.corners_in_layer());
+        let first_is_layer = self.layers.strides[0] == 1;
+        (0..self.corners()).map(move |corner| {
+            (
+                corner,
+                if first_is_layer {
+                    [corner % layers, corner / layers]
+                } else {
+                    [corner / width, corner % width]
+                },
+            )
+        })
+    }
+
+    /// Whether the four cells around a corner are nodes; none beyond the map.
+    pub fn around_corner(&self, layer: usize, place: usize) -> [Option<bool>; 4] {
+        let (layer, place) = (layer.cast_signed(), place.cast_signed());
+        [(-1, -1), (-1, 0), (0, -1), (0, 0)]
+            .map(|(l, p)| self.layers.beside(layer + l, place + p).map(|cell| self.node_of[cell] != NONE))
+    }
+
     /// Conductance from a node to an edge.
     pub fn to_edge(&self, node: usize, edge: u32) -> f64 {
         self.edges[usize::from(edge == SINK)][node]
