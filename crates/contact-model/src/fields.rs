@@ -136,6 +136,9 @@ pub struct Fields {
     /// Equivalent stress of von Mises in a vertical section below the largest one: a row for each depth, from the surface
     /// down; of a scene too.
     pub stress_section: Option<Field>,
+    /// Stress below the surface, in layers of the same thickness: the components xx, yy, zz, yz, xz, xy one after the
+    /// other, each layer by layer from the surface down; of a scene too.
+    pub stress_volume: Option<Vec<Field>>,
     /// Flow of this fluid per width along x and along y, in volume per time and length; of a scene too.
     pub flux: Option<[Field; 2]>,
 }
@@ -161,7 +164,7 @@ pub struct FieldQuantity {
     pub unit: &'static str,
     /// Its meaning, in one sentence.
     pub meaning: &'static str,
-    /// Number of components: 1, or 2 along x and y.
+    /// Number of components: 1, or 2 along x and y, or the 6 of a stress, each in several layers.
     pub components: usize,
     /// Whether pictures leave zeros white: where there is no contact, there is no pressure.
     pub white_zero: bool,

@@ -1,6 +1,7 @@
 //! What a scene reads off the interface: leakage with its bounds, paths, and the stress below the surface.
 
 use fractal_contact::bem3d::{Film, film_conductance};
+use fractal_contact::interface::stress::von_mises;
 use fractal_contact::interface::{
     FlowAxis, bracketed_force, conductance, gap_error, leakage, open_gap, percolation,
 };
@@ -11,6 +12,7 @@ use std::path::Path;
 
 /// Runs a scene without units in a folder, and reads its results.
 fn results(directory: &Path, text: &str) -> CsvFile {
+    std::fs::create_dir_all(directory).unwrap();
     let path = directory.join("scene.toml");
     std::fs::write(&path, text).unwrap();
     let scene = SceneFile::read(&path).unwrap();
@@ -88,6 +90,66 @@ fn the_largest_stress_below_a_ball() {
     assert!((number("factor_until_yield") - 0.02 / stress).abs() < 1e-12);
 }
 
+/// A ball yields where 0.62 of its largest pressure is the yield stress: F = (p0 pi R)^3/(6 E*^2 R) with nu = 0.3.
+#[test]
+fn the_load_of_first_yield() {
+    let ball = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nbodies = [\"rigid\", { young = 0.91, poisson = 0.3 }]\n\
+        force = [1e-3, 2e-3]\n[scene.body]\nkind = \"sphere\"\nradius = 1\nside = 0.3\n[models.bem3d]\ncells = 65\n\
+        [outputs]\nstress_below = { depths = [0.02, 0.04, 0.06, 0.08], yield_stress = 0.04 }\nthresholds = 1e-3\n";
+    let directory = tempfile::tempdir().unwrap();
+    results(directory.path(), ball);
+    let table = CsvFile::read(&directory.path().join("out/thresholds.csv")).unwrap();
+    let [before, after] =
+        ["force_before", "force_after"].map(|name| table.numbers(name).unwrap()[0].unwrap());
+    // E* = 1.
+    let exact = (0.04 / 0.62004 * std::f64::consts::PI).powi(3) / 6.0;
+    assert!(after - before <= 1e-3 * after, "{before} {after}");
+    // The error of 65 cells on the stress, three times over in the force.
+    assert!((before / exact - 1.0).abs() < 0.01, "{before} {after} {exact}");
+    let summary = std::fs::read_to_string(directory.path().join("out/report.html")).unwrap();
+    assert!(summary.contains("the body yields first at a force between"));
+}
+
+/// The volume of all components: its layer at the depth of the largest stress has that stress, and its files are those
+/// of a box.
+#[test]
+fn all_components_in_layers() {
+    let ball = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nbodies = [\"rigid\", { young = 0.91, poisson = 0.3 }]\n\
+        force = 0.0013333333333333\n[scene.body]\nkind = \"sphere\"\nradius = 1\nsize = [0.3, 0.2]\n[models.bem3d]\ncells = 48\n\
+        [outputs]\nstress_volume = [\"npy\", \"vti\"]\nstress_below = { depths = [0.048, 0.096], layers = 12 }\n";
+    let directory = tempfile::tempdir().unwrap();
+    let found = results(directory.path(), ball);
+    let largest = column(&found, "largest_von_mises")[0];
+    let file = |ending: &str| {
+        std::fs::read(directory.path().join(format!("out/stress_volume-bem3d-0-000.{ending}"))).unwrap()
+    };
+    let npy = file("npy");
+    let (layers, rows, columns) = (12, 32, 48);
+    assert!(String::from_utf8_lossy(&npy).contains("'shape': (6, 12, 32, 48)"));
+    let cells = rows * columns;
+    let numbers = npy[npy.len() - 8 * 6 * layers * cells..].as_chunks().0.iter();
+    let values: Vec<f64> = numbers.map(|bytes| f64::from_le_bytes(*bytes)).collect();
+    let at = |layer: usize, cell: usize| {
+        std::array::from_fn(|component| values[(component * layers + layer) * cells + cell])
+    };
+    let stress = |layer: usize| (0..cells).map(|cell| von_mises(&at(layer, cell))).fold(0.0_f64, f64::max);
+    let most = (0..layers).map(stress).fold(0.0, f64::max);
+    // Layers are 0.008 thick: the largest stress lies between their middles.
+    assert!(most <= largest * (1.0 + 1e-9) && most > 0.99 * largest, "{most} {largest}");
+    // Under the middle the pressure pushes down and the shear stresses vanish.
+    let [xx, yy, zz, yz, xz, _]: [f64; 6] = at(0, 16 * columns + 24);
+    assert!(zz < 0.0 && xx < 0.0 && yy < 0.0 && yz.abs().max(xz.abs()) < 0.1 * zz.abs());
+    let vti = String::from_utf8_lossy(&file("vti")).into_owned();
+    for part in [
+        "WholeExtent=\"0 48 0 32 0 12\"",
+        "Spacing=\"0.00625 0.00625 0.008\"",
+        "Name=\"stress_xx\"",
+        "Name=\"stress_xy\"",
+    ] {
+        assert!(vti.contains(part), "{part}: {}", &vti[..400]);
+    }
+}
+
 /// A path that is interrupted goes on to the same numbers.
 #[test]
 fn a_path_leaks_too() {
@@ -118,6 +180,28 @@ fn the_gap_closes_between_two_loads() {
     };
     let found = bracketed_force(contact.as_mut(), [before, after], 0.01, &never, is_closed).unwrap();
     assert!(before <= found[0] && found[1] <= after && found[1] - found[0] <= 0.01 * found[1]);
+    // A scene refines it too, whatever it prescribes.
+    let width = "percolation = true\nthresholds = 0.01\n";
+    for (name, text) in [
+        ("force", text.replace("percolation = true\n", width)),
+        (
+            "gap",
+            text.replace("mean_pressure = [0.1, 0.01, 0.03]", "mean_gap = [0.02, 0.003, 0.008]")
+                .replace("percolation = true\n", width),
+        ),
+    ] {
+        results(&directory.path().join(name), &text);
+        let table = CsvFile::read(&directory.path().join(name).join("out/thresholds.csv")).unwrap();
+        let ends = |kind: &str| {
+            ["before", "after"].map(|end| table.numbers(&format!("{kind}_{end}")).unwrap()[0].unwrap())
+        };
+        let (prescribed, forces) = (ends("prescribed"), ends("force"));
+        let width = (prescribed[1] - prescribed[0]).abs();
+        assert!(width > 0.0 && width <= 0.01 * prescribed[0].max(prescribed[1]), "{name} {prescribed:?}");
+        assert_eq!(prescribed[0] < prescribed[1], name == "force", "a gap falls");
+        // The same threshold, as far as the brackets say.
+        assert!(forces[0] < found[1] && found[0] < forces[1], "{name} {forces:?} {found:?}");
+    }
     let wrong = bracketed_force(contact.as_mut(), [after, 2.0 * after], 0.01, &never, is_closed);
     assert!(matches!(wrong, Err(Error::Domain { .. })), "{wrong:?}");
 }

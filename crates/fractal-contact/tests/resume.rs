@@ -159,6 +159,10 @@ const PATH: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nPAIR\n[scen
     hurst = 0.7\nrms_height = 0.01\n[outputs]\npressure = [\"npy\"]\n[effects]\nEFFECT\n[models.bem3d]\ncells = 49\n\
     [sampling]\nseed = 3\nSTEPS";
 
+/// What is read off each state takes its time, in which a run may be stopped too.
+const LEAKAGE: &str =
+    "gap = [\"npy\"]\nleakage = { viscosity = 1, pressure_drop = 1, along = \"x\" }\n[effects]";
+
 /// Paths on which something is remembered, each of seven states.
 fn paths() -> Vec<(&'static str, String)> {
     let steps = |values: [f64; 7], key: &str, tangential: bool| -> String {
@@ -215,6 +219,10 @@ fn paths() -> Vec<(&'static str, String)> {
             scene(contact_modulus, "boundary = \"periodic\"\nhardness = 0.2", pieces("force", "mean_gap")),
         ),
         ("friction, another quantity", scene(bodies, "friction = 0.4", sheared.to_owned())),
+        (
+            "hardness, leakage",
+            scene(contact_modulus, "hardness = 0.05", forces(false)).replace("[effects]", LEAKAGE),
+        ),
     ]
 }
 
@@ -286,6 +294,15 @@ fn sweeps() -> Vec<(&'static str, String)> {
             ),
         ),
         ("periodic", scene(rough, &format!("{bem3d}{gaps}"), "boundary = \"periodic\"", "area = true")),
+        (
+            "thresholds",
+            scene(
+                rough,
+                &format!("{bem3d}{gaps}"),
+                "boundary = \"periodic\"",
+                "percolation = true\nthresholds = 0.05",
+            ),
+        ),
         ("hardness", scene(rough, &format!("{bem3d}{forces}"), "hardness = 0.05", fields)),
         ("short range", scene(rough, &format!("{bem3d}{approaches}"), "adhesion = { work = 4e-5 }", "")),
         (

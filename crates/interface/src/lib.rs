@@ -55,4 +55,4 @@ pub use leakage::{
     flow_memory, leakage, leakage_until, stream_function,
 };
 pub use percolation::{Constriction, Percolation, percolation};
-pub use thresholds::bracketed_force;
+pub use thresholds::{bracketed, bracketed_force};

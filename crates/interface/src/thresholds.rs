@@ -38,10 +38,7 @@ pub fn bracketed_force(
     stop: Stop<'_>,
     is_reached: impl Fn(&ContactState) -> Result<bool>,
 ) -> Result<[f64; 2]> {
-    let [mut below, mut above] = forces;
-    if share.is_nan() || share <= 0.0 {
-        return Err(Error::of_positive("share", share));
-    }
+    let [below, above] = forces;
     if !(below.is_finite() && above.is_finite() && below < above) {
         return Err(Error::domain(
             "second force",
@@ -56,12 +53,37 @@ pub fn bracketed_force(
     if !reached(above)? {
         return Err(Error::domain("second force", above, "a force at which it has begun"));
     }
-    while above - below > share * above.abs() {
-        let middle = f64::midpoint(below, above);
-        if middle <= below || middle >= above {
+    bracketed(forces, share, reached)
+}
+
+/// Two numbers between which something begins: it has not begun at the first of `ends`, and it has at the second
+/// one, which may be the smaller of both, as a mean gap is. `is_reached` says so of a number between them, and the
+/// bracket is halved until it is not wider than `share` of its larger end.
+///
+/// # Errors
+/// [`Error::Domain`] for a share that is not positive; errors of `is_reached`.
+///
+/// ```
+/// let root = interface::bracketed([1.0, 2.0], 1e-6, |x| Ok(x * x >= 2.0))?;
+/// assert!(root[0] * root[0] < 2.0 && root[1] * root[1] >= 2.0 && root[1] - root[0] <= 2e-6);
+/// # Ok::<(), contact_model::Error>(())
+/// ```
+pub fn bracketed(
+    ends: [f64; 2],
+    share: f64,
+    mut is_reached: impl FnMut(f64) -> Result<bool>,
+) -> Result<[f64; 2]> {
+    if share.is_nan() || share <= 0.0 {
+        return Err(Error::of_positive("share", share));
+    }
+    let [mut before, mut after] = ends;
+    while (after - before).abs() > share * before.abs().max(after.abs()) {
+        let middle = f64::midpoint(before, after);
+        // Neighbouring numbers have no other one between them.
+        if [before, after].map(f64::to_bits).contains(&middle.to_bits()) {
             break;
         }
-        *(if reached(middle)? { &mut above } else { &mut below }) = middle;
+        *(if is_reached(middle)? { &mut after } else { &mut before }) = middle;
     }
-    Ok([below, above])
+    Ok([before, after])
 }

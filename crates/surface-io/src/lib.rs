@@ -197,5 +197,5 @@ pub use quantity::{Dimension, Quantity, QuantityError, Unit};
 pub use scan::{Metadata, Scan};
 pub use sides::Sides;
 pub use surface_file::SurfaceFile;
-pub use vti::{DataArray, Encoding, vti};
+pub use vti::{DataArray, Encoding, vti, vti_volume};
 pub use write::{Metric, map_file, text, xyz};

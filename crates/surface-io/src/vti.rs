@@ -61,12 +61,53 @@ pub fn vti(
     fields: &[DataArray<'_>],
     encoding: Encoding,
 ) -> Result<Vec<u8>, ContentError> {
-    let (cells, size) = (cells.into(), size.into());
-    check(cells, size, fields, encoding)?;
+    bytes(Grid { cells: cells.into(), size: size.into(), layers: None }, fields, encoding)
+}
+
+/// The bytes of a VTI file with fields on the cells of a box: layers of the same thickness, one behind the other
+/// along z, each with columns along x and rows along y. The values of a field go layer by layer, each row-major.
+///
+/// The first layer begins at z = 0. Otherwise as [`vti`].
+///
+/// # Errors
+/// As [`vti`]; [`ContentError::OutOfRange`] for a thickness that is not positive, [`ContentError::NoCells`] for no
+/// layers.
+///
+/// ```
+/// use surface_io::{Encoding, DataArray, vti_volume};
+/// let field = DataArray { name: "stress_zz", unit: "Pa", values: &[0.0, 1.0, 2.0, 3.0] };
+/// let file = String::from_utf8(vti_volume([2, 1], [1.0, 0.5], 2, 0.25, &[field], Encoding::Ascii)?)?;
+/// assert!(file.contains("WholeExtent=\"0 2 0 1 0 2\" Origin=\"0 0 0\" Spacing=\"0.5 0.5 0.25\""));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn vti_volume(
+    cells: impl Into<Cells>,
+    size: impl Into<Size>,
+    layers: usize,
+    thickness: f64,
+    fields: &[DataArray<'_>],
+    encoding: Encoding,
+) -> Result<Vec<u8>, ContentError> {
+    let layers = Some((layers, thickness));
+    bytes(Grid { cells: cells.into(), size: size.into(), layers }, fields, encoding)
+}
+
+/// The cells of a rectangle or a box.
+#[derive(Clone, Copy)]
+struct Grid {
+    cells: Cells,
+    size: Size,
+    /// Number of layers along z and the thickness of each; none for a rectangle.
+    layers: Option<(usize, f64)>,
+}
+
+fn bytes(grid: Grid, fields: &[DataArray<'_>], encoding: Encoding) -> Result<Vec<u8>, ContentError> {
+    check(grid, fields, encoding)?;
+    let Grid { cells, .. } = grid;
     let hidden = hidden_cells(fields);
     let count = fields.first().map_or(0, |f| f.values.len());
     let per_field = 24 * count + 200;
-    let mut file = Lines::new(head(cells, size, fields), fields.len() * per_field + 200);
+    let mut file = Lines::new(head(grid, fields), fields.len() * per_field + 200);
     // Every array is one run of base64 behind the ones before.
     let run = encoded_length(8 * count);
     for (k, field) in fields.iter().enumerate() {
@@ -96,20 +137,25 @@ pub fn vti(
 }
 
 /// Refuses sides, numbers of cells and fields that the file cannot hold.
-fn check(cells: Cells, size: Size, fields: &[DataArray<'_>], encoding: Encoding) -> Result<(), ContentError> {
-    for (what, side) in [("side along x", size.x), ("side along y", size.y)] {
+fn check(grid: Grid, fields: &[DataArray<'_>], encoding: Encoding) -> Result<(), ContentError> {
+    let Grid { cells, size, layers } = grid;
+    let (count, thickness) = layers.unwrap_or((1, 1.0));
+    for (what, side) in
+        [("side along x", size.x), ("side along y", size.y), ("thickness of a layer", thickness)]
+    {
         if !(side.is_finite() && side > 0.0) {
             return Err(ContentError::OutOfRange { what, value: side, expected: "a finite number > 0" });
         }
     }
     let Cells { columns, rows } = cells;
-    if columns == 0 || rows == 0 {
+    if columns == 0 || rows == 0 || count == 0 {
         return Err(ContentError::NoCells { rows: rows as u64, columns: columns as u64 });
     }
     for field in fields {
-        if cells.checked_count() != Some(field.values.len()) {
+        if cells.checked_count().and_then(|cells| cells.checked_mul(count)) != Some(field.values.len()) {
             let (what, value) = ("number of values of a field", field.values.len() as f64);
-            return Err(ContentError::out_of_range(what, value, "rows x columns"));
+            let expected = if layers.is_some() { "layers x rows x columns" } else { "rows x columns" };
+            return Err(ContentError::out_of_range(what, value, expected));
         }
         let wrong = |v: &f64| v.is_infinite() || (v.is_nan() && encoding == Encoding::Ascii);
         if let Some(at) = field.values.iter().position(wrong) {
@@ -135,15 +181,16 @@ fn hidden_cells(fields: &[DataArray<'_>]) -> Vec<u8> {
 }
 
 /// The file up to its first array.
-fn head(cells: Cells, size: Size, fields: &[DataArray<'_>]) -> String {
-    let Cells { columns, rows } = cells;
+fn head(grid: Grid, fields: &[DataArray<'_>]) -> String {
+    let Grid { cells: Cells { columns, rows }, size, layers } = grid;
     let active = fields.first().map_or(String::new(), |f| format!(" Scalars=\"{}\"", title(f)));
-    let extent = format!("0 {columns} 0 {rows} 0 0");
     let (dx, dy) = (size.x / columns as f64, size.y / rows as f64);
+    let (count, dz) = layers.unwrap_or((0, dx));
+    let extent = format!("0 {columns} 0 {rows} 0 {count}");
     format!(
         "<?xml version=\"1.0\"?>\n\
          <VTKFile type=\"ImageData\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-         <ImageData WholeExtent=\"{extent}\" Origin=\"0 0 0\" Spacing=\"{dx} {dy} {dx}\">\n\
+         <ImageData WholeExtent=\"{extent}\" Origin=\"0 0 0\" Spacing=\"{dx} {dy} {dz}\">\n\
          <Piece Extent=\"{extent}\">\n<PointData></PointData>\n<CellData{active}>\n"
     )
 }

@@ -124,7 +124,12 @@ pub fn run_in_memory(
                 return Ok(());
             }
             let states = &result.states[result.states.len().saturating_sub(1)..];
-            let unit = SolvedUnit { model: unit.numerics(scene).name(), surface: unit.surface, states };
+            let unit = SolvedUnit {
+                model: unit.numerics(scene).name(),
+                surface: unit.surface,
+                states,
+                thresholds: &[],
+            };
             let states = StateTable::new(scene, vec![unit], title(scene));
             let view = |file: FieldFile<'_>| field_pictures::view(&folder, file);
             let outcome = SceneOutcome::default();
@@ -245,6 +250,7 @@ impl<'a> SceneAnswers<'a> {
             model: unit.numerics(self.scene).name(),
             surface: unit.surface,
             states: result.states.as_slice(),
+            thresholds: result.thresholds.as_deref().unwrap_or(&[]),
         });
         StateTable::new(self.scene, solved.collect(), title(self.scene))
     }

@@ -3,10 +3,10 @@
 //! The choice of the grid for an accuracy rests on [`of_sizes`], in which no clock enters. Times
 //! that are measured here are printed and decide nothing.
 
-use crate::scenes::plan::Cost;
+use crate::scenes::plan::{Cost, refining_solves};
 use crate::scenes::read::{
-    LoadList, LoadRequest, Numerics, PrescribedLoad, Result, SECTION_DEPTHS, SceneFile, SceneSurface, cells,
-    sampled, step_to,
+    LoadList, LoadRequest, Numerics, PrescribedLoad, Result, SECTION_DEPTHS, STRESS_COMPONENTS, SceneFile,
+    SceneSurface, cells, sampled, step_to,
 };
 use bem3d::{BYTES_PER_CELL, solve_bytes};
 use contact_model::{Adhesion, Boundary, Cells, ContactState, Coupling, Friction, Rheology, Surface};
@@ -111,10 +111,11 @@ pub(crate) fn milliseconds_of_sizes(scene: &SceneFile, numerics: &Numerics) -> u
 }
 
 fn seconds_of_sizes(scene: &SceneFile, numerics: &Numerics) -> f64 {
-    let states = scene.request.count() as f64;
+    let count = scene.request.count() as f64;
+    let states = count + refining_solves(scene);
     let of_contact = match numerics {
         Numerics::Bem3d(model) => match rough_sweep(scene, model) {
-            Some(seconds) => seconds,
+            Some(seconds) => seconds * states / count,
             None => states * steps_of_time(scene) * seconds_of_dense(scene, numerics),
         },
         // The profile has about 49 nodes, each a state of the boundary elements, before the first load.
@@ -216,7 +217,7 @@ fn seconds_of_interface(scene: &SceneFile, numerics: &Numerics) -> f64 {
     let depths = interface
         .stress_below
         .as_ref()
-        .map_or(0.0, |of| of.depths.len() as f64 + REFINED_DEPTHS + of_section);
+        .map_or(0.0, |of| of.depths.len() as f64 + REFINED_DEPTHS + of_section + volume_layers(scene));
     let of_a_depth = if scene.effects.boundary == Boundary::Periodic {
         MICROSECONDS_OF_A_PERIODIC_DEPTH
     } else {
@@ -230,7 +231,15 @@ fn seconds_of_interface(scene: &SceneFile, numerics: &Numerics) -> f64 {
     ] {
         microseconds += if asked { time } else { 0.0 };
     }
-    1e-6 * microseconds * columns as f64 * rows as f64 * scene.request.count() as f64
+    let states = scene.request.count() as f64 + refining_solves(scene);
+    1e-6 * microseconds * columns as f64 * rows as f64 * states
+}
+
+/// Layers in which the stress is written; 0 where it is not requested.
+fn volume_layers(scene: &SceneFile) -> f64 {
+    let stress = scene.requested.interface.stress_below.as_ref();
+    let stress = stress.filter(|_| !scene.requested.stress_volume.is_empty());
+    stress.map_or(0.0, |of| of.layers().0 as f64)
 }
 
 /// Bytes that they need beside the contact.
@@ -243,7 +252,11 @@ fn bytes_of_interface(scene: &SceneFile, numerics: &Numerics) -> f64 {
         if interface.leakage.is_some() { flow(true) } else { 0.0 },
         if along { flow(false) } else { 0.0 },
         if interface.film.is_some() { BYTES_OF_A_FILM * cells.map_bytes() } else { 0.0 },
-        if interface.stress_below.is_some() { BYTES_OF_STRESS * cells.map_bytes() } else { 0.0 },
+        if interface.stress_below.is_some() {
+            (BYTES_OF_STRESS + STRESS_COMPONENTS.len() as f64 * volume_layers(scene)) * cells.map_bytes()
+        } else {
+            0.0
+        },
     ];
     // One after the other.
     each.into_iter().fold(0.0, f64::max)
@@ -284,8 +297,8 @@ pub(crate) fn predict(scene: &SceneFile, numerics: &Numerics) -> Cost {
         _ => (1.0, 1.0),
     };
     // Each surface is prepared once and begins cold; the loads after the first one begin from the one before.
-    let later =
-        solved.later / solved.states.saturating_sub(1).max(1) as f64 * requested.saturating_sub(1) as f64;
+    let after_first = requested.saturating_sub(1) as f64 + refining_solves(scene);
+    let later = solved.later / solved.states.saturating_sub(1).max(1) as f64 * after_first;
     cost.seconds =
         surfaces * (solved.prepare * time.powf(2.0 / TIME_EXPONENT) + (solved.first + later) * time);
     cost.seconds += surfaces * seconds_of_interface(scene, numerics);

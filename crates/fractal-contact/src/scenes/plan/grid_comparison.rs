@@ -118,6 +118,7 @@ impl GridComparison {
             // Numbers are compared, not fields.
             coarse.requested.von_mises.clear();
             coarse.requested.stress_section.clear();
+            coarse.requested.stress_volume.clear();
             solve(&coarse, seed, loads, stop)
         };
         let both = solved(2)?.into_iter().zip(solved(4)?);

@@ -8,7 +8,7 @@ use contact_model::{
 };
 use interface::stress::{
     PeriodicLoad, SectionLine, StressedBody, SubsurfaceStress, SurfaceLoad, largest_von_mises,
-    stress_section, von_mises,
+    stress_at_depths, stress_section, von_mises,
 };
 use interface::{
     FlowAxis, FlowBounds, FlowOptions, conductance_until, gap_error, leakage_until, open_gap, percolation,
@@ -67,6 +67,7 @@ pub(crate) fn with_interface(
     }
     if let Some((_, below)) = stressed {
         (fields.von_mises, fields.stress_section) = (below.at_largest, below.section);
+        fields.stress_volume = below.volume;
     }
     Ok(state.with_interface(read_off).with_fields(fields))
 }
@@ -193,6 +194,8 @@ struct FieldsBelow {
     at_largest: Option<Field>,
     /// In a vertical section through it.
     section: Option<Field>,
+    /// All components, one after the other, each layer by layer.
+    volume: Option<Vec<Field>>,
 }
 
 /// The largest stress, and the fields that are requested.
@@ -230,11 +233,24 @@ fn stress(
         let stress = stress_section(&load, body, line, &depths, stop)?.stress;
         Some(Field::new(cells, size, stress.iter().map(von_mises).collect())?)
     };
+    let volume = if scene.requested.stress_volume.is_empty() {
+        None
+    } else {
+        let (count, thickness) = of.layers();
+        let depths: Vec<f64> = (0..count).map(|k| (k as f64 + 0.5) * thickness).collect();
+        let mut components = [const { Vec::new() }; 6];
+        for layer in stress_at_depths(&load, body, &depths, stop)? {
+            for (component, field) in components.iter_mut().zip(layer.into_components()) {
+                component.push(field);
+            }
+        }
+        Some(components.into_iter().flatten().collect())
+    };
     let largest = LargestStress {
         von_mises: found.value,
         depth: found.depth,
         centre: found.centre,
         factor_until_yield: factor.flatten(),
     };
-    Ok((largest, FieldsBelow { at_largest, section }))
+    Ok((largest, FieldsBelow { at_largest, section, volume }))
 }

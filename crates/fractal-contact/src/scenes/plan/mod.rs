@@ -8,6 +8,7 @@ pub(crate) mod grid_comparison;
 pub(crate) mod interface_of_state;
 pub(crate) mod model_on_surface;
 pub(crate) mod scene_plan;
+pub(crate) mod thresholds;
 
 pub(crate) use accuracy::{Candidate, ErrorsOfStates, choose, within};
 pub(crate) use assumptions::{Assumptions, is_tilted};
@@ -16,3 +17,4 @@ pub(crate) use grid_comparison::{GridComparison, GridErrors, RMS_SLOPE, compared
 pub(crate) use interface_of_state::with_interface;
 pub(crate) use model_on_surface::{FORMAT, ModelOnSurface, probe};
 pub(crate) use scene_plan::{ModelPlan, Plan, PredictedFrom, check, of_slopes};
+pub(crate) use thresholds::{Threshold, refining_solves, thresholds_of};

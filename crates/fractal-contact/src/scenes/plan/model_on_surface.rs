@@ -1,12 +1,12 @@
 //! One model and one surface: what is solved, stored and divided as a whole.
 
 use crate::scenes::plan::calibration;
-use crate::scenes::read::{FieldFormat, HEIGHTS, Numerics, SceneFile, cells};
+use crate::scenes::read::{FieldFormat, HEIGHTS, Numerics, STRESS_VOLUME, SceneFile, cells};
 use contact_model::{Cells, Scene};
 
 /// Number of the format of stored states. Raise it with anything that changes a state: the numbers of a model or of
 /// `surface-gen`, or what is stored of a state. `bem3d` has a number of its own, which enters the keys too.
-pub const FORMAT: u32 = 16;
+pub const FORMAT: u32 = 17;
 
 /// Time of a picture, whatever it shows. Like [`MILLISECONDS_OF_CELL`] it was measured once, on one scene: `press` of
 /// a map of 640 x 480 cells under three loads, with pictures and without.
@@ -74,7 +74,13 @@ impl ModelOnSurface {
     /// Bytes of its states and of the fields that are asked for.
     pub fn stored_bytes(&self, scene: &SceneFile) -> u64 {
         let states = scene.request.count() as u64;
-        let fields: usize = scene.requested.fields().map(|(_, formats)| formats.len()).sum();
+        let layers = |name| match &scene.requested.interface.stress_below {
+            Some(stress) if name == STRESS_VOLUME.name => stress.layers().0,
+            _ => 1,
+        };
+        let files = scene.requested.fields();
+        let fields: usize =
+            files.map(|(field, formats)| formats.len() * field.components * layers(field.name)).sum();
         let Cells { columns: x, rows: y } = cells(scene, self.numerics(scene));
         1000 + states * (1000 + 8 * x as u64 * y as u64 * fields as u64)
     }

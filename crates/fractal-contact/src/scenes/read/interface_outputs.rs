@@ -69,7 +69,14 @@ pub struct RequestedStress {
     pub body: Option<LoadedBody>,
     /// The axis of a vertical section; `None` for x.
     pub section: Option<FlowAxis>,
+    /// Number of layers of a volume; `None` for [`VOLUME_LAYERS`].
+    pub layers: Option<usize>,
 }
+
+/// Layers of a volume, where a scene does not say.
+pub(crate) const VOLUME_LAYERS: usize = 16;
+/// More layers than this are a mistake.
+const MOST_LAYERS: usize = 1000;
 
 /// Depths of a vertical section.
 pub(crate) const SECTION_DEPTHS: usize = 64;
@@ -81,8 +88,17 @@ impl RequestedStress {
             Some(FlowAxis::Y) => (cells.rows, size.y),
             _ => (cells.columns, size.x),
         };
-        let deepest = self.depths.iter().copied().fold(0.0, f64::max);
-        (Cells { columns: count, rows: SECTION_DEPTHS }, Size { x: side, y: deepest })
+        (Cells { columns: count, rows: SECTION_DEPTHS }, Size { x: side, y: self.deepest() })
+    }
+
+    /// Number of layers of a volume, and the thickness of each.
+    pub(crate) fn layers(&self) -> (usize, f64) {
+        let count = self.layers.unwrap_or(VOLUME_LAYERS);
+        (count, self.deepest() / count as f64)
+    }
+
+    fn deepest(&self) -> f64 {
+        self.depths.iter().copied().fold(0.0, f64::max)
     }
 }
 
@@ -125,7 +141,7 @@ pub(crate) fn print_leakage(leakage: &RequestedLeakage, system: System) -> Strin
 }
 
 pub(crate) fn print_stress(stress: &RequestedStress, system: System) -> String {
-    let RequestedStress { depths, yield_stress, body, section } = stress;
+    let RequestedStress { depths, yield_stress, body, section, layers } = stress;
     let depths = depths.iter().map(|depth| printed::quantity(*depth, Dimension::LENGTH, system));
     let mut parts = vec![format!("depths = [{}]", depths.collect::<Vec<_>>().join(", "))];
     parts.extend(
@@ -135,6 +151,7 @@ pub(crate) fn print_stress(stress: &RequestedStress, system: System) -> String {
     );
     parts.extend(body.map(|body| format!("body = {}", word_of(&BODIES, body))));
     parts.extend(section.map(|axis| format!("section = {}", word_of(&AXES, axis))));
+    parts.extend(layers.map(|layers| format!("layers = {layers}")));
     format!("{{ {} }}", parts.join(", "))
 }
 
@@ -189,8 +206,18 @@ pub(crate) fn read_stress(entry: &Entry<'_>, system: System) -> ReadResult<Reque
         table.find("yield_stress").map(|stress| stress.positive(Dimension::PRESSURE, system)).transpose()?;
     let body = table.find("body").map(|body| body.choice(&BODIES)).transpose()?;
     let section = table.find("section").map(|axis| axis.choice(&AXES)).transpose()?;
+    let layers = table.find("layers").map(|layers| read_layers(&layers)).transpose()?;
     table.finish()?;
-    Ok(RequestedStress { depths, yield_stress, body, section })
+    Ok(RequestedStress { depths, yield_stress, body, section, layers })
+}
+
+fn read_layers(entry: &Entry<'_>) -> ReadResult<usize> {
+    let count = entry.size(1)?;
+    if count > MOST_LAYERS {
+        let help = format!("a whole number from 1 to {MOST_LAYERS}");
+        return Err(entry.diagnostic(format!("{count} layers")).with_help(help));
+    }
+    Ok(count)
 }
 
 impl RequestedStress {

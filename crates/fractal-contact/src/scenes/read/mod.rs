@@ -43,7 +43,8 @@ pub(crate) use load_kind::PrescribedLoad;
 pub(crate) use loads::{LoadList, LoadRequest};
 pub(crate) use numerics::{MOST_CELLS, Numerics};
 pub(crate) use outputs::{
-    FLUID_PRESSURE, FLUX, FieldFormat, HEIGHTS, RequestedOutputs, STRESS_SECTION, all_fields, read_outputs,
+    FLUID_PRESSURE, FLUX, FieldFormat, HEIGHTS, RequestedOutputs, STRESS_COMPONENTS, STRESS_SECTION,
+    STRESS_VOLUME, all_fields, read_outputs,
 };
 pub(crate) use path::{PathPiece, cycles, step_to};
 pub(crate) use places::Places;

@@ -113,9 +113,28 @@ pub(crate) static STRESS_SECTION: FieldQuantity = FieldQuantity {
     take: |fields| fields.stress_section.take().into_iter().collect(),
 };
 
+/// The six components of the stress in layers below the surface.
+pub(crate) static STRESS_VOLUME: FieldQuantity = FieldQuantity {
+    name: "stress_volume",
+    words: "stress below the surface",
+    symbol: "",
+    unit: "Pa",
+    meaning: "the components xx, yy, zz, yz, xz and xy of the stress in layers below the surface, tension positive",
+    components: STRESS_COMPONENTS.len(),
+    white_zero: false,
+    signed: true,
+    classes: &[],
+    outlined: false,
+    get: |fields| fields.stress_volume.as_deref().unwrap_or(&[]),
+    take: |fields| fields.stress_volume.take().unwrap_or_default(),
+};
+
+/// The components of a stress, in their order.
+pub(crate) const STRESS_COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "yz", "xz", "xy"];
+
 /// Every field that a scene can write to files.
 pub(crate) fn all_fields() -> impl Iterator<Item = &'static FieldQuantity> {
-    [&HEIGHTS, &FLUID_PRESSURE, &FLUX, &VON_MISES, &STRESS_SECTION].into_iter().chain(FIELDS)
+    [&HEIGHTS, &FLUID_PRESSURE, &FLUX, &VON_MISES, &STRESS_SECTION, &STRESS_VOLUME].into_iter().chain(FIELDS)
 }
 
 /// The requested outputs: results of the models, and files.
@@ -136,6 +155,8 @@ pub struct RequestedOutputs {
     pub von_mises: Vec<FieldFormat>,
     /// Formats of the stress in a section.
     pub stress_section: Vec<FieldFormat>,
+    /// Formats of the stress in layers; no pictures.
+    pub stress_volume: Vec<FieldFormat>,
     /// Distributions that are counted.
     pub distributions: Vec<Distributed>,
     /// Whether states of boundary elements are compared with those on coarser grids.
@@ -144,6 +165,8 @@ pub struct RequestedOutputs {
     pub statistics: bool,
     /// Leakage, percolation and the stress below the surface.
     pub interface: RequestedInterface,
+    /// The width to which the loads between which something begins are refined, as a share of the larger one.
+    pub thresholds: Option<f64>,
     /// Whether the law of the interface is written, for other programs.
     pub law: bool,
     /// Whether curves are drawn.
@@ -172,6 +195,7 @@ impl RequestedOutputs {
             (&FLUX, &self.flux),
             (&VON_MISES, &self.von_mises),
             (&STRESS_SECTION, &self.stress_section),
+            (&STRESS_VOLUME, &self.stress_volume),
         ];
         if let Some((_, formats)) = own.into_iter().find(|(own, _)| own.name == field.name) {
             return formats;
@@ -208,12 +232,14 @@ impl RequestedOutputs {
             (FLUX.name, !self.flux.is_empty()),
             (VON_MISES.name, !self.von_mises.is_empty()),
             (STRESS_SECTION.name, !self.stress_section.is_empty()),
+            (STRESS_VOLUME.name, !self.stress_volume.is_empty()),
             ("distributions", !self.distributions.is_empty()),
             ("grid_error", self.grid_error),
             ("leakage", self.interface.leakage.is_some()),
             ("percolation", self.interface.percolation),
             ("film", self.interface.film.is_some()),
             ("stress_below", self.interface.stress_below.is_some()),
+            ("thresholds", self.thresholds.is_some()),
             ("law", self.law),
             ("curves", self.curves),
             ("statistics", self.statistics),
@@ -224,6 +250,9 @@ impl RequestedOutputs {
 
 /// The key that says which states are drawn.
 pub(crate) const DRAWN_STATES: &str = "drawn_states";
+
+/// Widths of thresholds that solves can tell from the rounding of a load.
+const THRESHOLD_WIDTHS: std::ops::RangeInclusive<f64> = 1e-9..=1.0;
 
 /// Keys of `[outputs]` that the program itself computes; those of the models are [`Output::ALL`].
 pub(crate) static OUTPUT_KEYS: KeyTable<RequestedOutputs> = KeyTable {
@@ -283,6 +312,42 @@ pub(crate) static OUTPUT_KEYS: KeyTable<RequestedOutputs> = KeyTable {
             default: "none",
             read: |requested, entry, _| read_formats(entry).map(|formats| requested.stress_section = formats),
             print: |requested, _| print_formats(&requested.stress_section),
+        },
+        Key {
+            name: "stress_volume",
+            takes: "formats",
+            about: "the six components of the stress in layers of the same thickness, from the surface down to the largest of the `depths` of `stress_below`, as `\"vti\"` (a volume for ParaView) or `\"npy\"` (component, layer, row, column); `layers` in `stress_below` is the number of layers",
+            default: "none",
+            read: |requested, entry, _| {
+                let formats = read_formats(entry)?;
+                if formats.iter().any(|format| [FieldFormat::Png, FieldFormat::Pixels].contains(format)) {
+                    return Err(entry
+                        .diagnostic("a picture of `stress_volume`, which is a volume")
+                        .with_help(
+                            "`[\"vti\"]` or `[\"npy\"]`; pictures are `stress_section` and `von_mises`",
+                        ));
+                }
+                requested.stress_volume = formats;
+                Ok(())
+            },
+            print: |requested, _| print_formats(&requested.stress_volume),
+        },
+        Key {
+            name: "thresholds",
+            takes: "number",
+            about: "`thresholds.csv` names two loads between which the interface closes (with `percolation`) and the body yields first (with a `yield_stress`); further loads are solved between them until they differ by no more than this share of the larger one, such as 0.01",
+            default: "loads of the scene",
+            read: |requested, entry, _| {
+                let width = entry.positive_number()?;
+                if !THRESHOLD_WIDTHS.contains(&width) {
+                    return Err(entry
+                        .diagnostic(format!("a width of {width}"))
+                        .with_help("a share of the load from 1e-9 to 1, such as 0.01"));
+                }
+                requested.thresholds = Some(width);
+                Ok(())
+            },
+            print: |requested, _| requested.thresholds.map(|width| format!("{width:?}")),
         },
         Key {
             name: "law",
@@ -361,7 +426,7 @@ pub(crate) static OUTPUT_KEYS: KeyTable<RequestedOutputs> = KeyTable {
         Key {
             name: "stress_below",
             takes: "table",
-            about: "the largest equivalent stress of von Mises below the surface, and its place: `{ depths = [\"1 um\", \"2 um\", \"5 um\"], yield_stress = \"1 GPa\", body = \"second\", section = \"x\" }`. The depth is refined between the neighbours of the best of `depths`. With `yield_stress` there is the factor on all tractions until yield. `body` is needed where two elastic bodies differ",
+            about: "the largest equivalent stress of von Mises below the surface, and its place: `{ depths = [\"1 um\", \"2 um\", \"5 um\"], yield_stress = \"1 GPa\", body = \"second\", section = \"x\", layers = 16 }`. The depth is refined between the neighbours of the best of `depths`. With `yield_stress` there is the factor on all tractions until yield. `body` is needed where two elastic bodies differ",
             default: "none",
             read: |requested, entry, context| {
                 requested.interface.stress_below = Some(read_stress(entry, context.system)?);

@@ -793,9 +793,26 @@ fn check_interface(scene: &SceneFile, places: &Places) -> ReadResult<()> {
         ("flux", &outputs.flux, no_fluid, "leakage", LEAKAGE_EXAMPLE),
         ("von_mises", &outputs.von_mises, no_stress, "stress_below", STRESS_EXAMPLE),
         ("stress_section", &outputs.stress_section, no_stress, "stress_below", STRESS_EXAMPLE),
+        ("stress_volume", &outputs.stress_volume, no_stress, "stress_below", STRESS_EXAMPLE),
     ] {
         if lacks && !formats.is_empty() {
             return refused(key, format!("`{key}` is requested without `{missing}`"), example);
+        }
+    }
+    if outputs.thresholds.is_some() {
+        let yields = requested.stress_below.as_ref().is_some_and(|stress| stress.yield_stress.is_some());
+        if !requested.percolation && !yields {
+            let message = "`thresholds` without anything that begins at some load".to_owned();
+            return refused(
+                "thresholds",
+                message,
+                "add `percolation = true`, or a `yield_stress` to `stress_below`",
+            );
+        }
+        if matches!(scene.request, LoadRequest::Path(_)) {
+            let message =
+                "`thresholds` along a path: further loads between its steps would change it".to_owned();
+            return refused("thresholds", message, "prescribe loads in a list, such as `mean_pressure`");
         }
     }
     if outputs.law {
@@ -843,9 +860,14 @@ fn check_interface(scene: &SceneFile, places: &Places) -> ReadResult<()> {
         let message = "the stress below the surface of a layer is not known here".to_owned();
         return refused("stress_below", message, "remove `layer` or `stress_below`");
     }
-    if !outputs.stress_section.is_empty() && !stress.depths.iter().any(|depth| *depth > 0.0) {
-        let message = "a section down to the depth 0: `stress_below` names no other one".to_owned();
-        return refused("stress_section", message, "add the depth down to which it goes to `depths`");
+    for (key, what, formats) in [
+        ("stress_section", "section", &outputs.stress_section),
+        ("stress_volume", "volume", &outputs.stress_volume),
+    ] {
+        if !formats.is_empty() && !stress.depths.iter().any(|depth| *depth > 0.0) {
+            let message = format!("a {what} down to the depth 0: `stress_below` names no other one");
+            return refused(key, message, "add the depth down to which it goes to `depths`");
+        }
     }
     let body = stress.of_body(scene.pair, scene.effects.friction);
     body.map(|_| ()).map_err(|wrong| wrong.at(places.key("outputs.stress_below")))

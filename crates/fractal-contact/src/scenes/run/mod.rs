@@ -11,6 +11,7 @@ pub(crate) mod scene_job;
 pub(crate) mod shared_lines;
 pub(crate) mod solve;
 pub(crate) mod state_result;
+pub(crate) mod thresholds;
 pub(crate) mod warnings;
 
 pub(crate) use field_pictures::is_hidden;
@@ -24,4 +25,5 @@ pub(crate) use shared_lines::SharedLines;
 pub(crate) use state_result::{
     Answer, AnsweredState, FieldFile, ModelResult, SolvedUnit, StateRecord, field_of_file,
 };
+pub(crate) use thresholds::{RefinedThreshold, Refinement, bracket};
 pub(crate) use warnings::{Concerned, Warning, rests_on_few_cells};

@@ -1,13 +1,13 @@
 //! Solves one model on one surface under all loads, or along the whole path.
 
-use crate::scenes::plan::{GridComparison, ModelOnSurface, solved_map, with_interface};
+use crate::scenes::plan::{GridComparison, ModelOnSurface, solved_map, thresholds_of, with_interface};
 use crate::scenes::read::{
-    Error, FieldFormat, HEIGHTS, LoadList, LoadRequest, Numerics, PathPiece, Result, SceneFile, cells,
-    distributed, step_to, words,
+    Error, FieldFormat, HEIGHTS, LoadList, LoadRequest, Numerics, PathPiece, Result, STRESS_COMPONENTS,
+    STRESS_VOLUME, SceneFile, cells, distributed, step_to, words,
 };
 use crate::scenes::run::{
-    Answer, AnsweredState, FieldFile, FieldView, Folder, Keeper, ModelResult, SharedLines, StateRecord,
-    Warning, field_pictures,
+    Answer, AnsweredState, FieldFile, FieldView, Folder, Keeper, ModelResult, Refinement, SharedLines,
+    StateRecord, Warning, field_pictures,
 };
 use contact_model::{
     ContactState, Field, FieldQuantity, LargestPull, Load, NormalLoad, Normalisation, PreparedContact,
@@ -36,8 +36,10 @@ impl ModelOnSurface {
         stop: Stop<'_>,
     ) -> Result<ModelResult> {
         let SceneInFolder { scene, lines, folder } = of;
+        let refines = scene.requested.thresholds.is_some();
         if let LoadRequest::Loads(loads) = &scene.request
             && result.states.len() == loads.values.len()
+            && (result.thresholds.is_some() || !refines)
         {
             // Each of them was solved before the run, or before it was interrupted.
             result.complete = true;
@@ -120,8 +122,9 @@ impl ModelOnSurface {
             if drawn && field_pictures::is_needed(scene, name) {
                 kept.files.push(field_pictures::keep(folder, file(""), &all)?);
             }
-            // Only the first surface is shown, and only fields that are written to files.
-            if drawn && surface == 0 && !formats.is_empty() {
+            // Only the first surface is shown, and only fields that are written to files; a volume is no picture.
+            let is_map = name != STRESS_VOLUME.name;
+            if drawn && surface == 0 && !formats.is_empty() && is_map {
                 let view = FieldView::new(field.cells(), &shown);
                 kept.files.push(field_pictures::keep_view(folder, file(""), &view)?);
             }
@@ -245,8 +248,38 @@ impl ContactInHand<'_, '_> {
             self.result.states.insert(place, record);
             self.keep(false);
         }
-        self.result.complete = true;
+        self.result.complete = self.refine_thresholds(requests, normalisation)?;
         Ok(())
+    }
+
+    /// Solves loads between those of the scene until each threshold is known as closely as it is asked for; false
+    /// where it was stopped. A solve that fails leaves the threshold between the loads of the scene, with a note.
+    fn refine_thresholds(&mut self, loads: &LoadList, normalisation: Normalisation) -> Result<bool> {
+        let scene = self.scene;
+        let Some(width) = scene.requested.thresholds.filter(|_| self.result.thresholds.is_none()) else {
+            return Ok(true);
+        };
+        // What follows begins with what the contact remembers now, in a run that goes on as well.
+        self.keep(true);
+        let numerics = self.unit.numerics(scene);
+        let refinement = Refinement { scene, numerics, loads, normalisation, width };
+        let mut refined = Vec::new();
+        for of in thresholds_of(scene) {
+            match refinement.solve(of, &self.result.states, self.contact, self.stop) {
+                Ok(found) => refined.extend(found),
+                Err(contact_model::Error::Stopped { .. }) => return Ok(false),
+                Err(error) => {
+                    let (model, surface) = (numerics.name(), self.unit.surface);
+                    let words = of.words();
+                    let note = format!(
+                        "{model}, surface {surface}: the load at which {words} is not refined: {error}"
+                    );
+                    self.result.notes.push(note);
+                }
+            }
+        }
+        self.result.thresholds = Some(refined);
+        Ok(true)
     }
 
     /// Refuses loads that need more memory than there is: a solve that is refused memory ends the process.
@@ -298,13 +331,20 @@ impl ContactInHand<'_, '_> {
             if let Ok(step) = &step {
                 self.check_memory(&[step.load])?;
             }
+            // Where what is read off the state is stopped, the step has not been made.
+            let reads_off = !self.scene.requested.interface.outputs().is_empty();
+            let before = if reads_off { self.contact.memory().ok().flatten() } else { None };
             let advanced = step.and_then(|step| match self.contact.advance_until(step, self.stop) {
                 Err(contact_model::Error::Stopped { .. }) => Ok(None),
-                // To its end: what the contact remembers belongs to the state that has been solved.
-                Ok(state) => {
-                    let state = with_interface(self.scene, numerics, step.load.normal, state, &never)?;
-                    Ok(Some((largest.enter(step.load.normal, state), true)))
-                }
+                Ok(state) => match with_interface(self.scene, numerics, step.load.normal, state, self.stop) {
+                    Err(contact_model::Error::Stopped { .. }) => {
+                        if let Some(before) = before {
+                            self.contact.recall(&before)?;
+                        }
+                        Ok(None)
+                    }
+                    state => Ok(Some((largest.enter(step.load.normal, state?), true))),
+                },
                 // The best state of a solve that missed its tolerance or, beyond the pull-off force, the last
                 // stable state.
                 Err(error) => {
@@ -388,8 +428,16 @@ impl WrittenField<'_> {
         let Self { quantity, field, components, all, shown } = *self;
         Ok(match format {
             FieldFormat::Npy => {
-                let shape = [components.len(), field.rows(), field.columns()];
-                let bytes = surface_io::npy(&shape[usize::from(components.len() == 1)..], all);
+                let [rows, columns] = [field.rows(), field.columns()];
+                let shape = match components.len() {
+                    count if quantity.name == STRESS_VOLUME.name => {
+                        let kinds = quantity.components;
+                        vec![kinds, count / kinds, rows, columns]
+                    }
+                    1 => vec![rows, columns],
+                    count => vec![count, rows, columns],
+                };
+                let bytes = surface_io::npy(&shape, all);
                 Some(bytes.map_err(|e| runs::Error::content(path, e.to_string()))?)
             }
             FieldFormat::Png => None,
@@ -411,6 +459,25 @@ fn vti(
     components: &[Cow<'_, [f64]>],
 ) -> Result<Vec<u8>> {
     let unit = scene.system.shown(quantity.unit);
+    let content = |e: surface_io::ContentError| Error::Argument {
+        name: "vti",
+        reason: format!("{}: {e}", path.display()),
+    };
+    if let (true, Some(stress)) =
+        (quantity.name == STRESS_VOLUME.name, &scene.requested.interface.stress_below)
+    {
+        let (layers, thickness) = stress.layers();
+        let whole: Vec<Vec<f64>> = components.chunks(layers).map(<[_]>::concat).collect();
+        let names = STRESS_COMPONENTS.map(|component| format!("stress_{component}"));
+        let arrays: Vec<surface_io::DataArray<'_>> = names
+            .iter()
+            .zip(&whole)
+            .map(|(name, values)| surface_io::DataArray { name, unit, values })
+            .collect();
+        let encoding = surface_io::Encoding::Base64;
+        return surface_io::vti_volume(field.cells(), field.size(), layers, thickness, &arrays, encoding)
+            .map_err(content);
+    }
     // Two components are two arrays.
     let names: Vec<String> = match components.len() {
         1 => vec![quantity.name.to_owned()],
@@ -421,9 +488,7 @@ fn vti(
         .zip(components)
         .map(|(name, values)| surface_io::DataArray { name, unit, values })
         .collect();
-    let bytes = surface_io::vti(field.cells(), field.size(), &arrays, surface_io::Encoding::Base64)
-        .map_err(|e| Error::Argument { name: "vti", reason: format!("{}: {e}", path.display()) })?;
-    Ok(bytes)
+    surface_io::vti(field.cells(), field.size(), &arrays, surface_io::Encoding::Base64).map_err(content)
 }
 
 #[cfg(test)]

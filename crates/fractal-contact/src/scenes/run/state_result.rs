@@ -2,7 +2,7 @@
 
 use crate::scenes::plan::GridErrors;
 use crate::scenes::read::{Bin, Distributed, SceneFile, all_fields, amount, words};
-use crate::scenes::run::{Folder, StoredFile, Warning};
+use crate::scenes::run::{Folder, RefinedThreshold, StoredFile, Warning};
 use contact_model::quantities::StateQuantity;
 use contact_model::{ContactState, Normalisation, Status};
 use serde::{Deserialize, Serialize};
@@ -18,6 +18,8 @@ pub struct ModelResult {
     pub(crate) complete: bool,
     /// States in the order of the loads.
     pub(crate) states: Vec<StateRecord>,
+    /// Thresholds between loads that are closer together than those of the scene; `None` before they are refined.
+    pub(crate) thresholds: Option<Vec<RefinedThreshold>>,
     /// How many states an earlier run had kept: all of a result that is read back.
     #[serde(skip_serializing)]
     pub(crate) kept: usize,
@@ -33,11 +35,12 @@ struct StoredResult {
     seconds: f64,
     complete: bool,
     states: Vec<StateRecord>,
+    thresholds: Option<Vec<RefinedThreshold>>,
 }
 
 impl From<StoredResult> for ModelResult {
-    fn from(StoredResult { seconds, complete, states }: StoredResult) -> Self {
-        Self { seconds, complete, kept: states.len(), states, notes: Vec::new() }
+    fn from(StoredResult { seconds, complete, states, thresholds }: StoredResult) -> Self {
+        Self { seconds, complete, kept: states.len(), states, thresholds, notes: Vec::new() }
     }
 }
 
@@ -148,6 +151,7 @@ pub(crate) struct SolvedUnit<'a> {
     pub model: &'static str,
     pub surface: usize,
     pub states: &'a [StateRecord],
+    pub thresholds: &'a [RefinedThreshold],
 }
 
 /// The parts of the name of a field's file.

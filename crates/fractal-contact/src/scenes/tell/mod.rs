@@ -101,8 +101,13 @@ mod tests {
                 scene.requested.interface.percolation = true;
             }
             AskedBy::Interface(InterfaceOutput::StressBelow | InterfaceOutput::YieldStress) => {
-                let stress =
-                    RequestedStress { depths: vec![1.0], yield_stress: Some(1.0), body: None, section: None };
+                let stress = RequestedStress {
+                    depths: vec![1.0],
+                    yield_stress: Some(1.0),
+                    body: None,
+                    section: None,
+                    layers: None,
+                };
                 scene.requested.interface.stress_below = Some(stress);
             }
             AskedBy::Effect("hardness") => effects.hardness = Hardness::Limit { pressure: 1.0 },

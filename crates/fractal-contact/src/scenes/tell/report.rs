@@ -337,7 +337,9 @@ impl Report<'_> {
     /// The fields of the first surface that were kept for the page, the map before all others.
     fn views(&self) -> Vec<View<'_>> {
         let mut views: Vec<View<'_>> = Vec::new();
-        for &SolvedUnit { model, surface, states } in self.states.units.iter().filter(|of| of.surface == 0) {
+        for &SolvedUnit { model, surface, states, .. } in
+            self.states.units.iter().filter(|of| of.surface == 0)
+        {
             for state in self.by_importance(states) {
                 views.extend(self.scene().requested.fields().filter_map(|(field, _)| {
                     let file =

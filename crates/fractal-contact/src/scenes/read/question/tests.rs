@@ -312,8 +312,14 @@ fn interface() -> BoxedStrategy<RequestedInterface> {
         .prop_map(|(viscosity, pressure_drop, along)| RequestedLeakage { viscosity, pressure_drop, along });
     let body = of(select(vec![LoadedBody::First, LoadedBody::Second]));
     let section = of(select(vec![FlowAxis::X, FlowAxis::Y]));
-    let stress = (vec(positive(), 1..4), of(positive()), body, section).prop_map(
-        |(depths, yield_stress, body, section)| RequestedStress { depths, yield_stress, body, section },
+    let stress = (vec(positive(), 1..4), of(positive()), body, section, of(1_usize..100)).prop_map(
+        |(depths, yield_stress, body, section, layers)| RequestedStress {
+            depths,
+            yield_stress,
+            body,
+            section,
+            layers,
+        },
     );
     let material = prop_oneof![
         positive().prop_map(FilmMaterial::Resistivity),
