@@ -215,7 +215,7 @@ fn read_layers(entry: &Entry<'_>) -> ReadResult<usize> {
     let count = entry.size(1)?;
     if count > MOST_LAYERS {
         let help = format!("a whole number from 1 to {MOST_LAYERS}");
-        return Err(entry.diagnostic(format!("{count} layers")).with_help(help));
+        return Err(entry.diagnostic(format!("a volume of {count} layers")).with_help(help));
     }
     Ok(count)
 }

@@ -341,7 +341,7 @@ pub(crate) static OUTPUT_KEYS: KeyTable<RequestedOutputs> = KeyTable {
                 let width = entry.positive_number()?;
                 if !THRESHOLD_WIDTHS.contains(&width) {
                     return Err(entry
-                        .diagnostic(format!("a width of {width}"))
+                        .diagnostic(format!("`thresholds` refined to {width} of the load"))
                         .with_help("a share of the load from 1e-9 to 1, such as 0.01"));
                 }
                 requested.thresholds = Some(width);
