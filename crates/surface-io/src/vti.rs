@@ -61,7 +61,7 @@ pub fn vti(
     fields: &[DataArray<'_>],
     encoding: Encoding,
 ) -> Result<Vec<u8>, ContentError> {
-    bytes(Grid { cells: cells.into(), size: size.into(), layers: None }, fields, encoding)
+    bytes(ImageGrid { cells: cells.into(), size: size.into(), layers: None }, fields, encoding)
 }
 
 /// The bytes of a VTI file with fields on the cells of a box: layers of the same thickness, one behind the other
@@ -89,21 +89,21 @@ pub fn vti_volume(
     encoding: Encoding,
 ) -> Result<Vec<u8>, ContentError> {
     let layers = Some((layers, thickness));
-    bytes(Grid { cells: cells.into(), size: size.into(), layers }, fields, encoding)
+    bytes(ImageGrid { cells: cells.into(), size: size.into(), layers }, fields, encoding)
 }
 
 /// The cells of a rectangle or a box.
 #[derive(Clone, Copy)]
-struct Grid {
+struct ImageGrid {
     cells: Cells,
     size: Size,
     /// Number of layers along z and the thickness of each; none for a rectangle.
     layers: Option<(usize, f64)>,
 }
 
-fn bytes(grid: Grid, fields: &[DataArray<'_>], encoding: Encoding) -> Result<Vec<u8>, ContentError> {
+fn bytes(grid: ImageGrid, fields: &[DataArray<'_>], encoding: Encoding) -> Result<Vec<u8>, ContentError> {
     check(grid, fields, encoding)?;
-    let Grid { cells, .. } = grid;
+    let ImageGrid { cells, .. } = grid;
     let hidden = hidden_cells(fields);
     let count = fields.first().map_or(0, |f| f.values.len());
     let per_field = 24 * count + 200;
@@ -137,8 +137,8 @@ fn bytes(grid: Grid, fields: &[DataArray<'_>], encoding: Encoding) -> Result<Vec
 }
 
 /// Refuses sides, numbers of cells and fields that the file cannot hold.
-fn check(grid: Grid, fields: &[DataArray<'_>], encoding: Encoding) -> Result<(), ContentError> {
-    let Grid { cells, size, layers } = grid;
+fn check(grid: ImageGrid, fields: &[DataArray<'_>], encoding: Encoding) -> Result<(), ContentError> {
+    let ImageGrid { cells, size, layers } = grid;
     let (count, thickness) = layers.unwrap_or((1, 1.0));
     for (what, side) in
         [("side along x", size.x), ("side along y", size.y), ("thickness of a layer", thickness)]
@@ -181,8 +181,8 @@ fn hidden_cells(fields: &[DataArray<'_>]) -> Vec<u8> {
 }
 
 /// The file up to its first array.
-fn head(grid: Grid, fields: &[DataArray<'_>]) -> String {
-    let Grid { cells: Cells { columns, rows }, size, layers } = grid;
+fn head(grid: ImageGrid, fields: &[DataArray<'_>]) -> String {
+    let ImageGrid { cells: Cells { columns, rows }, size, layers } = grid;
     let active = fields.first().map_or(String::new(), |f| format!(" Scalars=\"{}\"", title(f)));
     let (dx, dy) = (size.x / columns as f64, size.y / rows as f64);
     let (count, dz) = layers.unwrap_or((0, dx));

@@ -17,4 +17,4 @@ pub(crate) use grid_comparison::{GridComparison, GridErrors, RMS_SLOPE, compared
 pub(crate) use interface_of_state::with_interface;
 pub(crate) use model_on_surface::{FORMAT, ModelOnSurface, probe};
 pub(crate) use scene_plan::{ModelPlan, Plan, PredictedFrom, check, of_slopes};
-pub(crate) use thresholds::{Threshold, refining_solves, thresholds_of};
+pub(crate) use thresholds::{RefinedThreshold, Threshold, refining_solves, thresholds_of};

@@ -59,6 +59,16 @@ pub(crate) fn thresholds_of(scene: &SceneFile) -> Vec<Threshold> {
     Threshold::ALL.into_iter().filter(|of| has_loads && of.is_requested(scene)).collect()
 }
 
+/// Loads between which a threshold lies, closer together than those of the scene.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct RefinedThreshold {
+    pub of: Threshold,
+    /// The prescribed values before it and after it.
+    pub prescribed: [f64; 2],
+    /// The normal forces of both.
+    pub forces: [f64; 2],
+}
+
 /// Solves at most that bring the loads of all thresholds as close together as the scene asks for.
 pub(crate) fn refining_solves(scene: &SceneFile) -> f64 {
     let halvings = scene.requested.thresholds.map_or(0.0, |width| (1.0 / width).log2().ceil());

@@ -25,5 +25,5 @@ pub(crate) use shared_lines::SharedLines;
 pub(crate) use state_result::{
     Answer, AnsweredState, FieldFile, ModelResult, SolvedUnit, StateRecord, field_of_file,
 };
-pub(crate) use thresholds::{RefinedThreshold, Refinement, bracket};
+pub(crate) use thresholds::{Refinement, bracket};
 pub(crate) use warnings::{Concerned, Warning, rests_on_few_cells};

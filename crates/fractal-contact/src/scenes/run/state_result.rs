@@ -1,8 +1,8 @@
 //! The stored results of a model, and the names of their files.
 
-use crate::scenes::plan::GridErrors;
+use crate::scenes::plan::{GridErrors, RefinedThreshold};
 use crate::scenes::read::{Bin, Distributed, SceneFile, all_fields, amount, words};
-use crate::scenes::run::{Folder, RefinedThreshold, StoredFile, Warning};
+use crate::scenes::run::{Folder, StoredFile, Warning};
 use contact_model::quantities::StateQuantity;
 use contact_model::{ContactState, Normalisation, Status};
 use serde::{Deserialize, Serialize};

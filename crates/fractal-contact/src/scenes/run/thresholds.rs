@@ -1,21 +1,10 @@
 //! The loads between which an interface closes and a body yields first, and further solves between them.
 
-use crate::scenes::plan::{Threshold, with_interface};
+use crate::scenes::plan::{RefinedThreshold, Threshold, with_interface};
 use crate::scenes::read::{LoadList, Numerics, RequestedInterface, SceneFile};
 use crate::scenes::run::StateRecord;
 use contact_model::{Normalisation, PreparedContact, Result, Stop};
 use interface::bracketed;
-use serde::{Deserialize, Serialize};
-
-/// Loads between which a threshold lies, closer together than those of the scene.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(crate) struct RefinedThreshold {
-    pub of: Threshold,
-    /// The prescribed values before it and after it.
-    pub prescribed: [f64; 2],
-    /// The normal forces of both.
-    pub forces: [f64; 2],
-}
 
 /// The last state before a threshold and the first one after it, in the order of the forces. `None` stands for a
 /// load smaller or larger than those of the scene.
