@@ -451,6 +451,7 @@ impl SceneFile {
         check_tangential(&scene, &places)?;
         check_coupling(&scene, &places)?;
         check_interface(&scene, &places)?;
+        check_thresholds_and_law(&scene, &places)?;
         scene.places = places;
         Ok(scene)
     }
@@ -765,6 +766,41 @@ const FILM_EXAMPLE: &str = "add `conductance = { kind = \"electrical\", resistiv
 const FILM_EXAMPLE_OF_HEAT: &str = "add `conductance = { kind = \"thermal\", conductivities = [\"50 W/(m K)\", \"50 W/(m K)\"] }` to [outputs]";
 const STRESS_EXAMPLE: &str = "add `stress_below = { depths = [\"1 um\", \"2 um\", \"5 um\"] }` to [outputs]";
 
+/// Checks that the loads at which something begins, and the law of the interface, can be found in the scene.
+fn check_thresholds_and_law(scene: &SceneFile, places: &Places) -> ReadResult<()> {
+    let (outputs, requested) = (&scene.requested, &scene.requested.interface);
+    let refused = |key: &str, message: String, help: &str| {
+        Err(places.at_key(&format!("outputs.{key}"), message).with_help(help.to_owned()))
+    };
+    if outputs.thresholds.is_some() {
+        let yields = requested.stress_below.as_ref().is_some_and(|stress| stress.yield_stress.is_some());
+        if !requested.percolation && !yields {
+            let message = "`thresholds` without anything that begins at some load".to_owned();
+            return refused(
+                "thresholds",
+                message,
+                "add `percolation = true`, or a `yield_stress` to `stress_below`",
+            );
+        }
+        if matches!(scene.request, LoadRequest::Path(_)) {
+            let message =
+                "`thresholds` along a path: further loads between its steps would change it".to_owned();
+            return refused("thresholds", message, "prescribe loads in a list, such as `mean_pressure`");
+        }
+    }
+    if outputs.law {
+        if scene.effects.boundary != Boundary::Periodic {
+            let message = "the law of an interface with free boundaries: it has no mean gap".to_owned();
+            return refused("law", message, "add `boundary = \"periodic\"` to [effects]");
+        }
+        if matches!(scene.request, LoadRequest::Path(_)) {
+            let message = "the law of an interface along a path: it would depend on the path".to_owned();
+            return refused("law", message, "prescribe `mean_pressure` or `mean_gap` in a list");
+        }
+    }
+    Ok(())
+}
+
 /// Checks that leakage, paths and the stress below the surface can be computed in the scene.
 fn check_interface(scene: &SceneFile, places: &Places) -> ReadResult<()> {
     let (outputs, requested) = (&scene.requested, &scene.requested.interface);
@@ -797,32 +833,6 @@ fn check_interface(scene: &SceneFile, places: &Places) -> ReadResult<()> {
     ] {
         if lacks && !formats.is_empty() {
             return refused(key, format!("`{key}` is requested without `{missing}`"), example);
-        }
-    }
-    if outputs.thresholds.is_some() {
-        let yields = requested.stress_below.as_ref().is_some_and(|stress| stress.yield_stress.is_some());
-        if !requested.percolation && !yields {
-            let message = "`thresholds` without anything that begins at some load".to_owned();
-            return refused(
-                "thresholds",
-                message,
-                "add `percolation = true`, or a `yield_stress` to `stress_below`",
-            );
-        }
-        if matches!(scene.request, LoadRequest::Path(_)) {
-            let message =
-                "`thresholds` along a path: further loads between its steps would change it".to_owned();
-            return refused("thresholds", message, "prescribe loads in a list, such as `mean_pressure`");
-        }
-    }
-    if outputs.law {
-        if scene.effects.boundary != Boundary::Periodic {
-            let message = "the law of an interface with free boundaries: it has no mean gap".to_owned();
-            return refused("law", message, "add `boundary = \"periodic\"` to [effects]");
-        }
-        if matches!(scene.request, LoadRequest::Path(_)) {
-            let message = "the law of an interface along a path: it would depend on the path".to_owned();
-            return refused("law", message, "prescribe `mean_pressure` or `mean_gap` in a list");
         }
     }
     if let Some(film) = requested.film {

@@ -248,16 +248,16 @@ impl ContactInHand<'_, '_> {
             self.result.states.insert(place, record);
             self.keep(false);
         }
-        self.result.complete = self.refine_thresholds(requests, normalisation)?;
+        self.result.complete = self.refine_thresholds(requests, normalisation);
         Ok(())
     }
 
     /// Solves loads between those of the scene until each threshold is known as closely as it is asked for; false
     /// where it was stopped. A solve that fails leaves the threshold between the loads of the scene, with a note.
-    fn refine_thresholds(&mut self, loads: &LoadList, normalisation: Normalisation) -> Result<bool> {
+    fn refine_thresholds(&mut self, loads: &LoadList, normalisation: Normalisation) -> bool {
         let scene = self.scene;
         let Some(width) = scene.requested.thresholds.filter(|_| self.result.thresholds.is_none()) else {
-            return Ok(true);
+            return true;
         };
         // What follows begins with what the contact remembers now, in a run that goes on as well.
         self.keep(true);
@@ -267,7 +267,7 @@ impl ContactInHand<'_, '_> {
         for of in thresholds_of(scene) {
             match refinement.solve(of, &self.result.states, self.contact, self.stop) {
                 Ok(found) => refined.extend(found),
-                Err(contact_model::Error::Stopped { .. }) => return Ok(false),
+                Err(contact_model::Error::Stopped { .. }) => return false,
                 Err(error) => {
                     let (model, surface) = (numerics.name(), self.unit.surface);
                     let words = of.words();
@@ -279,7 +279,7 @@ impl ContactInHand<'_, '_> {
             }
         }
         self.result.thresholds = Some(refined);
-        Ok(true)
+        true
     }
 
     /// Refuses loads that need more memory than there is: a solve that is refused memory ends the process.
