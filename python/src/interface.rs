@@ -5,8 +5,8 @@ use crate::memory;
 use crate::numbers::RealNumber;
 use crate::pool;
 use crate::state;
-use fractal_contact::bem3d::{Film, film_conductance_until};
-use fractal_contact::interface::stress::{self, StressedBody, SubsurfaceStress, SurfaceLoad};
+use fractal_contact::bem3d::{Film, film_conductance_until, film_memory};
+use fractal_contact::interface::stress::{self, StressedBody, SubsurfaceStress, SurfaceLoad, stress_memory};
 use fractal_contact::interface::{self, FlowAxis, FlowBounds, FlowOptions, Leakage, SheetFlow};
 use fractal_contact::runs::check_memory;
 use fractal_contact::{Boundary, Cells, Error, Field, Result, Stop};
@@ -18,11 +18,6 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Bytes for each cell of paths: the order of the cells, and disjoint sets.
 const PATHS: f64 = 20.0;
-/// Maps of transforms and influence functions below a map that ends, and below one that repeats itself, of a pressure
-/// and with tractions.
-const STRESS_MAPS: [[f64; 2]; 2] = [[30.0, 60.0], [14.0, 26.0]];
-/// Maps of the conduction through a film: vectors of conjugate gradients, tables and transforms of twice the sides.
-const FILM_MAPS: f64 = 40.0;
 /// Stresses of which one task finds the equivalent stress. Between two tasks Ctrl-C is heard.
 const CHUNK: usize = 1 << 16;
 
@@ -123,7 +118,7 @@ pub fn film_conductance<'py>(
     tolerance: RealNumber,
 ) -> PyResult<Bound<'py, PyDict>> {
     let cells = cells(&gap);
-    memory::check_grid(py, "the film of a map", cells, FILM_MAPS * cells.map_bytes())?;
+    memory::check_grid(py, "the film of a map", cells, film_memory(cells))?;
     let gap = field(py, &gap, cell)?;
     let film = Film { resistivity: resistivities.0.0, bodies: resistivities.1.0 };
     let found =
@@ -206,9 +201,8 @@ impl GivenLoad<'_> {
     /// `MemoryError` where this load, what plans its stress and so many further bytes are more than there are.
     fn check_memory(&self, py: Python<'_>, more: f64) -> PyResult<()> {
         let (cells, tractions) = (cells(&self.pressure), self.traction.is_some());
-        let kinds = STRESS_MAPS[usize::from(self.repeats == [true, true])];
-        let maps = kinds[usize::from(tractions)] + if tractions { 3.0 } else { 1.0 };
-        check(cells, maps * cells.map_bytes() + more).map_err(|error| of_model(py, error))
+        let bytes = stress_memory(cells, boundary(self.repeats), tractions);
+        check(cells, bytes + more).map_err(|error| of_model(py, error))
     }
 
     fn load(&self, py: Python<'_>) -> PyResult<(SurfaceLoad, StressedBody)> {

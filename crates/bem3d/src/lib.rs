@@ -323,7 +323,7 @@ mod tasks;
 mod tuning;
 
 // All that a first program needs beside the model itself: scenes, loads, states, height maps, the traits.
-pub use conduction::{Film, FilmConductance, film_conductance, film_conductance_until};
+pub use conduction::{Film, FilmConductance, film_conductance, film_conductance_until, film_memory};
 #[doc(no_inline)]
 pub use contact_model::*;
 pub use kernel::{PeriodicKernel, love};

@@ -121,7 +121,19 @@ pub use plane::StressField;
 pub use points::stress_at_points;
 pub use section::{SectionLine, StressSection, stress_section};
 
-use contact_model::{Result, Stop};
+use contact_model::{Boundary, Cells, Result, Stop};
+
+/// Maps of transforms and influence functions below a map that ends, and below one that repeats itself along both
+/// axes: of a pressure, and with tractions.
+const MAPS: [[f64; 2]; 2] = [[30.0, 60.0], [14.0, 26.0]];
+
+/// Bytes that the stress at one depth below a map of these cells needs at its peak, approximately, the load included.
+/// [`SubsurfaceStress::memory`] knows it more closely for a load.
+pub fn stress_memory(cells: impl Into<Cells>, boundary: Boundary, has_tractions: bool) -> f64 {
+    let maps = MAPS[usize::from(boundary == Boundary::Periodic)][usize::from(has_tractions)];
+    let of_load = if has_tractions { 3.0 } else { 1.0 };
+    (maps + of_load) * cells.into().map_bytes()
+}
 
 /// The stress at the centres of all cells, at each of the depths.
 ///

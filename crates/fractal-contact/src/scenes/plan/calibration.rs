@@ -8,9 +8,10 @@ use crate::scenes::read::{
     LoadList, LoadRequest, Numerics, PrescribedLoad, Result, SECTION_DEPTHS, STRESS_COMPONENTS, SceneFile,
     SceneSurface, cells, sampled, step_to,
 };
-use bem3d::{BYTES_PER_CELL, solve_bytes};
+use bem3d::{BYTES_PER_CELL, film_memory, solve_bytes};
 use contact_model::{Adhesion, Boundary, Cells, ContactState, Coupling, Friction, Rheology, Surface};
 use interface::FlowOptions;
+use interface::stress::stress_memory;
 use mdr1d::BYTES_PER_ELEMENT;
 use std::time::Duration;
 use web_time::Instant;
@@ -58,10 +59,6 @@ const MICROSECONDS_OF_A_DEPTH: f64 = 1.2;
 const MICROSECONDS_OF_A_PERIODIC_DEPTH: f64 = 0.25;
 /// Depths between those of the scene at which the largest stress is refined.
 const REFINED_DEPTHS: f64 = 12.0;
-/// Maps of a film: vectors of conjugate gradients, tables and transforms of twice the sides.
-const BYTES_OF_A_FILM: f64 = 40.0;
-/// Maps of transforms and influence functions of the stress.
-const BYTES_OF_STRESS: f64 = 60.0;
 
 /// Time of one model from the sizes of its solves and from times that were measured once
 /// ([`milliseconds_of_sizes`]), within a factor of ten. Operator applications and linear solves are not
@@ -251,9 +248,11 @@ fn bytes_of_interface(scene: &SceneFile, numerics: &Numerics) -> f64 {
     let each = [
         if interface.leakage.is_some() { flow(true) } else { 0.0 },
         if along { flow(false) } else { 0.0 },
-        if interface.film.is_some() { BYTES_OF_A_FILM * cells.map_bytes() } else { 0.0 },
+        if interface.film.is_some() { film_memory(cells) } else { 0.0 },
         if interface.stress_below.is_some() {
-            (BYTES_OF_STRESS + STRESS_COMPONENTS.len() as f64 * volume_layers(scene)) * cells.map_bytes()
+            let has_tractions = scene.effects.friction != Friction::Off;
+            stress_memory(cells, scene.effects.boundary, has_tractions)
+                + STRESS_COMPONENTS.len() as f64 * volume_layers(scene) * cells.map_bytes()
         } else {
             0.0
         },
