@@ -334,4 +334,4 @@ pub mod benchmarks;
 
 /// Number of the solver's format. It changes with anything that can change a result beyond its tolerance, so
 /// that stored results of other versions are not mixed with new ones.
-pub const FORMAT: u32 = 6;
+pub const FORMAT: u32 = 7;

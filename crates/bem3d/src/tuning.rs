@@ -96,6 +96,9 @@ pub struct Tuning {
     pub single_noise: f64,
     /// ... and only its change where it exceeds this multiple of the error bound of the present gap.
     pub resolved: f64,
+    /// Residuals below this multiple of the tolerance are expected to be within it after the next inner solve, whose
+    /// gap is evaluated in double precision at once.
+    pub expected: f64,
     /// A cell is added when it penetrates by more than this multiple of the rms gap left on the contact:
     /// penetrations below are within the error of the inner solve, and adding those cells would enlarge the
     /// set again.
@@ -218,6 +221,7 @@ impl Tuning {
         patience: 12,
         single_noise: 1e-4,
         resolved: 100.0,
+        expected: 8.0,
         noise: 1.0,
         whole_step: 0.9,
         short_steps: 2,
@@ -234,10 +238,10 @@ impl Tuning {
         undecided_far: 0.125,
         stiffness_rounds: 40,
         stiffness_steps: 60,
-        stiffness_single: 500.0,
+        stiffness_single: 100.0,
         stiffness_share: 0.5,
         stiffness_aim: 0.3,
-        stiffness_reduction: 1e-3,
+        stiffness_reduction: 1e-4,
         tightenings: 5,
         tighter: (0.1, 0.5),
         tight_aim: 0.7,
@@ -268,7 +272,7 @@ macro_rules! constants {
 }
 
 /// Every constant of `Tuning`, for a study of the effect of each.
-pub const CONSTANTS: [Constant; 69] = constants![
+pub const CONSTANTS: [Constant; 70] = constants![
     pair_ns,
     point_ns,
     single,
@@ -303,6 +307,7 @@ pub const CONSTANTS: [Constant; 69] = constants![
     patience,
     single_noise,
     resolved,
+    expected,
     noise,
     whole_step,
     short_steps,
@@ -391,6 +396,10 @@ pub const BAND: usize = 32;
 /// Bytes of a row in one stripe of a spectrum: four cache lines, so that a stripe of some thousand rows lies
 /// in the second cache.
 pub const STRIPE_BYTES: usize = 256;
+/// Pairs of rows that are written to a stripe, or read from it, one after the other, in spectra of at least ...
+pub const GROUP: usize = 4;
+/// ... this number of bytes: they leave the second cache, and the memory likes pieces of 2 kB more than of 512 bytes.
+pub const GROUPED_BYTES: usize = 3 << 20;
 /// Bytes of a cache line.
 pub const CACHE_LINE: usize = 64;
 /// Side of the squares in which columns and rows are exchanged: it divides the columns of a cache line.

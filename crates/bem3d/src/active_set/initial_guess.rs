@@ -164,8 +164,12 @@ pub fn cold_start(
         problem.coarser = Some(coarse);
         return Ok(from_above(problem));
     }
-    let limits =
-        Limits { tolerance: tuning.coarse_tolerance, outer_iterations: tuning.coarse_iterations, ..limits };
+    let limits = Limits {
+        tolerance: tuning.coarse_tolerance,
+        outer_iterations: tuning.coarse_iterations,
+        is_guess: true,
+        ..limits
+    };
     let coarse_target = match target {
         Control::Force(force) => Control::Force(force / pressure_ratio(grid, &tuning)),
         approach @ Control::Approach(_) => approach,

@@ -11,7 +11,7 @@ use contact_model::{Status, Stop};
 pub struct Evaluated {
     /// How well the contact conditions hold.
     pub residuals: Residuals,
-    /// Whether the gap is known on every cell below the plane, in double precision.
+    /// Whether the gap is known on every cell below the plane, in double precision unless the result is a guess.
     pub complete: bool,
     /// Bound on the error of the gap, as a length.
     pub uncertainty: f64,
@@ -139,7 +139,10 @@ impl OuterProgress {
             Look::Exact
         } else if length > tuning.single_noise * d {
             Look::Rough
-        } else if falls && length > tuning.resolved * uncertainty {
+        } else if falls
+            && error > tuning.expected * limits.tolerance
+            && length > tuning.resolved * uncertainty
+        {
             Look::Change
         } else {
             Look::Exact
@@ -172,7 +175,8 @@ mod tests {
     use contact_model::never;
 
     const TUNING: Tuning = Tuning::DEFAULT;
-    const TIGHT: Limits = Limits { tolerance: 1e-6, height: Some(1.0), outer_iterations: 100, factor: true };
+    const TIGHT: Limits =
+        Limits { tolerance: 1e-6, height: Some(1.0), outer_iterations: 100, factor: true, is_guess: false };
 
     /// A complete evaluation with these residuals.
     fn seen(error: f64) -> Evaluated {
@@ -329,6 +333,10 @@ mod tests {
         assert_eq!(small(0.0), Look::Change);
         assert_eq!(small(0.49 / TUNING.resolved), Look::Change);
         assert_eq!(small(0.51 / TUNING.resolved), Look::Exact);
+        // Those that are expected within the tolerance are evaluated to end the solve.
+        let last = |error| look(1.0, &[known(error, 0.0)], 1e3 / noise);
+        assert_eq!(last(1.1 * TUNING.expected * TIGHT.tolerance), Look::Change);
+        assert_eq!(last(0.9 * TUNING.expected * TIGHT.tolerance), Look::Exact);
         // Those that do not fall may be noise.
         assert_eq!(look(1.0, &[seen(0.5), seen(0.44)], 1e3 / noise), Look::Change);
         assert_eq!(look(1.0, &[seen(0.5), seen(0.46)], 1e3 / noise), Look::Exact);

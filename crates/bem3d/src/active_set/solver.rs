@@ -203,7 +203,7 @@ impl<'a> Solver<'a> {
                 None => recorder.timed(Part::Residuals, || self.evaluate(progress.look, stop))?,
             };
             let within = evaluated.residuals.worst() <= tolerance;
-            if within && (evaluated.uncertainty > 0.0 || evaluated.step.is_some()) {
+            if within && !evaluated.complete && (evaluated.uncertainty > 0.0 || evaluated.step.is_some()) {
                 // Better than expected; the end of a step that was shortened has not been evaluated.
                 evaluated = recorder.timed(Part::Residuals, || self.evaluate(Look::Exact, stop))?;
             }
@@ -274,7 +274,7 @@ impl<'a> Solver<'a> {
         let under = ContactGap { contact: &now.contact, left, checked, gap };
         let evaluated = Evaluated {
             residuals: Residuals::measure(bounds, &now.p, under, height),
-            complete: *uncertainty <= 0.0 && step.is_none() && d <= state.reach,
+            complete: (limits.is_guess || *uncertainty <= 0.0) && step.is_none() && d <= state.reach,
             uncertainty: *uncertainty,
             factored: now.q.is_some(),
             step,
@@ -388,6 +388,11 @@ impl<'a> Solver<'a> {
         workspace.take(operators, set, recipe, stop)?;
         let fixed = if target.force().is_some() { Fixed::Force } else { Fixed::Approach };
         let outcome = workspace.solve(operators, &mut change, fixed, criteria, stop)?;
+        if outcome.is_limited && criteria.steps == tuning.inner_steps {
+            // The weights that were carried from set to set may fit this one badly.
+            operators.plans.limited += 1;
+            workspace.begin_load();
+        }
         let set = workspace.set();
         let (contact, p) = recorder.timed(Part::Sets, || {
             let mut before = set.carry(&now.contact, &now.p);

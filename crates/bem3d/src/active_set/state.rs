@@ -97,6 +97,8 @@ pub struct Limits {
     pub outer_iterations: usize,
     /// Whether small sets may be factored.
     pub factor: bool,
+    /// Whether residuals in single precision end the solve: its result is a guess.
+    pub is_guess: bool,
 }
 
 /// An initial guess.

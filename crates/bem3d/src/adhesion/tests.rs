@@ -22,7 +22,7 @@ const TOLERANCE: f64 = 1e-9;
 const SAME: f64 = 1e-6;
 
 const LIMITS: Limits =
-    Limits { tolerance: TOLERANCE, height: Some(1.0), outer_iterations: 300, factor: true };
+    Limits { tolerance: TOLERANCE, height: Some(1.0), outer_iterations: 300, factor: true, is_guess: false };
 
 /// Numbers in [0, 1) from a fixed sequence.
 struct FixedSequence(u64);

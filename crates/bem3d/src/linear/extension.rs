@@ -74,6 +74,11 @@ impl Extension {
         }
     }
 
+    /// The window it is prepared for; `None` where it extends by zeros.
+    pub fn window(&self) -> Option<Window> {
+        self.window
+    }
+
     /// Whether there are levels; without levels, an extension by zeros needs no sums.
     pub fn is_wanted(&self) -> bool {
         !self.levels.is_empty()

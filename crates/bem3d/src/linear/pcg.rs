@@ -56,6 +56,8 @@ pub struct PcgOutcome {
     pub applications: usize,
     /// Estimate from above of the energy `r' G^-1 r` at the beginning.
     pub energy: f64,
+    /// Whether the number of steps ended it, and no other criterion.
+    pub is_limited: bool,
 }
 
 /// Buffers for linear systems, kept from one to the next.
@@ -85,16 +87,25 @@ impl Workspace {
         recipe: Recipe,
         stop: Stop<'_>,
     ) -> Result<(), Interrupted> {
-        if self.recipe.is_some_and(|last| last.has_preconditioner() != recipe.has_preconditioner()) {
+        if self.recipe.is_none_or(|last| last.has_preconditioner() != recipe.has_preconditioner()) {
             self.begin_load();
         }
-        self.recipe = Some(recipe);
+        let is_same = self.recipe == Some(recipe) && *self.set() == set;
+        // Until it is prepared there is none.
+        self.recipe = None;
         let (decay, recorder) = (operators.tuning().decay, operators.recorder().clone());
         if let (Conditioning::Torus { extended, .. }, (_, Some(torus))) =
             (recipe.conditioning, operators.system(recipe, stop)?)
         {
-            let decay = if extended { decay } else { 0.0 };
-            recorder.timed(Part::Sets, || self.extension.set(&set, torus.window(), decay));
+            // Another window may have been planned since.
+            if !is_same || self.extension.window() != Some(torus.window()) {
+                let decay = if extended { decay } else { 0.0 };
+                recorder.timed(Part::Sets, || self.extension.set(&set, torus.window(), decay));
+            }
+        }
+        self.recipe = Some(recipe);
+        if is_same {
+            return Ok(());
         }
         recorder.timed(Part::Sets, || {
             if recipe.is_single() {
@@ -183,12 +194,10 @@ impl<T: Real> Vectors<T> {
     pub fn take_fields(&mut self, set: CellSet, fields: usize) {
         self.set = set;
         let length = fields * self.set.len();
-        for vector in [&mut self.r, &mut self.t] {
-            vector.clear();
-            vector.resize(length, T::default());
-        }
+        self.r.clear();
+        self.r.resize(length, T::default());
         // These are written before they are read.
-        for vector in [&mut self.x, &mut self.kt, &mut self.z] {
+        for vector in [&mut self.x, &mut self.t, &mut self.kt, &mut self.z] {
             vector.resize(length, T::default());
         }
     }
@@ -292,6 +301,10 @@ fn pcg<'a, T: Real>(
         if gradients.is_reached(found) {
             break;
         }
+        if gradients.steps >= gradients.criteria.steps {
+            gradients.is_limited = true;
+            break;
+        }
         gradients.turn(found);
         if !gradients.find_step()? {
             break; // Below what single precision can resolve.
@@ -325,6 +338,8 @@ struct ConjugateGradients<'a, T> {
     gain: f64,
     steps: usize,
     applications: usize,
+    /// Whether the number of steps ended the iteration.
+    is_limited: bool,
 }
 
 impl<'a, T: Real> ConjugateGradients<'a, T> {
@@ -334,7 +349,9 @@ impl<'a, T: Real> ConjugateGradients<'a, T> {
         stop: Stop<'a>,
     ) -> Result<Self, Interrupted> {
         let LinearSystem { preconditioner, vectors, fixed, .. } = system;
-        vectors.x.fill(T::default());
+        for vector in [&mut vectors.x, &mut vectors.t] {
+            vector.fill(T::default());
+        }
         let factor = preconditioner.energy_factor();
         let total = if fixed == Fixed::Force { Some(vectors.weigh(preconditioner, stop)?) } else { None };
         Ok(Self {
@@ -351,6 +368,7 @@ impl<'a, T: Real> ConjugateGradients<'a, T> {
             gain: 0.0,
             steps: 0,
             applications: 0,
+            is_limited: false,
         })
     }
 
@@ -386,7 +404,7 @@ impl<'a, T: Real> ConjugateGradients<'a, T> {
         self.criteria.energy.is_some_and(|e| self.factor * product <= e.share * (e.base + self.gain))
     }
 
-    /// Whether the iteration ends before another step.
+    /// Whether the residual or the energy ends the iteration.
     fn is_reached(&self, found: Preconditioned) -> bool {
         let product = found.product;
         self.is_small(product)
@@ -394,7 +412,6 @@ impl<'a, T: Real> ConjugateGradients<'a, T> {
             || found.largest <= self.criteria.floor
             || product.is_nan()
             || product <= 0.0
-            || self.steps >= self.criteria.steps
     }
 
     /// Takes the last step, and turns to the next direction.
@@ -447,7 +464,8 @@ impl<'a, T: Real> ConjugateGradients<'a, T> {
             add(x, self.step, t);
         }
         let energy = self.factor * self.start.max(0.0);
-        PcgOutcome { steps: self.steps, applications: self.applications, energy }
+        let Self { steps, applications, is_limited, .. } = self;
+        PcgOutcome { steps, applications, energy, is_limited }
     }
 }
 

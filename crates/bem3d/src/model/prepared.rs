@@ -232,6 +232,7 @@ impl PreparedSurface {
             height: height.map(|h| self.nondimensional.approach_in(h)),
             outer_iterations: self.options.max_outer_iterations,
             factor: self.options.method == Method::Auto,
+            is_guess: false,
         }
     }
 
@@ -324,6 +325,6 @@ impl PreparedSurface {
     /// Starts the counting of work.
     pub(super) fn begin_count(&mut self) {
         let plans = &mut self.problem.operators.plans;
-        (plans.applications, plans.solves, plans.descent) = (0, 0, 0);
+        (plans.applications, plans.solves, plans.descent, plans.limited) = (0, 0, 0, 0);
     }
 }

@@ -6,7 +6,7 @@
 use contact_model::{Adhesion, Cells, Effects, Friction, Output, Outputs, Rheology};
 
 /// A contact that fills the grid, bytes for each cell ...
-const DENSE: f64 = 216.0;
+const DENSE: f64 = 200.0;
 /// ... and for each cell of a side: lines of transforms and of the preconditioner.
 const DENSE_SIDE: f64 = 7000.0;
 /// An increment of friction beside it, bytes for each cell ...

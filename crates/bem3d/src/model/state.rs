@@ -120,10 +120,17 @@ impl PreparedSurface {
             self.slip_fields(slid, fields)?;
         }
         let tangential = slid.map(|slid| self.tangential(slid)).transpose()?.flatten();
-        let strategy = match std::mem::take(&mut self.problem.operators.plans.descent) {
-            0 => found.strategy,
-            steps => format!("{}; {steps} steps of the fall-back", found.strategy),
-        };
+        let plans = &mut self.problem.operators.plans;
+        let mut strategy = vec![found.strategy];
+        match std::mem::take(&mut plans.descent) {
+            0 => {}
+            steps => strategy.push(format!("{steps} steps of the fall-back")),
+        }
+        match std::mem::take(&mut plans.limited) {
+            0 => {}
+            solves => strategy.push(format!("{solves} inner solves ended at their limit of steps")),
+        }
+        let strategy = strategy.join("; ");
         let mut report = SolveReport::new(found.status, strategy);
         report.work = Work::of(std::mem::take(&mut self.problem.operators.plans.solves), fields.as_ref());
         report.iterations = found.iterations;

@@ -1,11 +1,12 @@
 //! Convolution with a kernel on a window of the grid, by FFTs of pairs of its rows and of its columns.
 
 use super::influence::InfluenceOperator;
-use super::transform::Transform;
+use super::transform::{Room, Transform};
 use crate::geometry::{CellSet, Lengths, Window};
 use crate::kernel::Tensor;
 use crate::real::{Real, binary_unit, update};
 use contact_model::{Interrupted, Stop};
+use numerics::parallel::widest;
 use rustfft::num_complex::Complex;
 use std::fmt;
 use std::sync::Arc;
@@ -44,7 +45,12 @@ where
     ///
     /// Memory: `N height * (lx / 2 + 1)` complex numbers besides the symbol, and a few columns for each thread.
     pub fn new(window: Window, lengths: Lengths, symbol: Arc<Vec<[T; E]>>) -> Self {
-        Self { transform: Transform::new(window, lengths), symbol, rounded: Rounded::default() }
+        Self::within(&Room::default(), window, lengths, symbol)
+    }
+
+    /// The same with its spectra in a room that other transforms use too.
+    pub fn within(room: &Room<T>, window: Window, lengths: Lengths, symbol: Arc<Vec<[T; E]>>) -> Self {
+        Self { transform: Transform::new(window, lengths, room), symbol, rounded: Rounded::default() }
     }
 
     /// The window.
@@ -238,9 +244,14 @@ fn act<T: Real, S: Tensor<T, N>, const N: usize>(
     let mut columns = columns.map(|column| &mut column[..count]);
     if let [column] = &mut columns[..] {
         // Of one component, as a loop over one slice, which is vectorised.
-        for (value, entries) in column.iter_mut().zip(symbol) {
-            *value = entries.displacements([*value; N])[0];
-        }
+        widest(
+            #[inline(always)]
+            move || {
+                for (value, entries) in column.iter_mut().zip(symbol) {
+                    *value = entries.displacements([*value; N])[0];
+                }
+            },
+        );
         return;
     }
     for (k, entries) in symbol.enumerate() {

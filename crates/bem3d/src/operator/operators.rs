@@ -193,6 +193,7 @@ impl Operators {
         let Self { plans, two_level, two_transforms, .. } = self;
         let (tuning, recorder) = (*plans.tuning(), plans.recorder().clone());
         let lengths = if let Application::Fft(lengths) = application { Some(lengths) } else { None };
+        let room = plans.room.clone();
         let (kernel, inverse) = plans.planned(lengths, window, torus, stop)?;
         let planned = match application {
             Application::Direct | Application::Fft(_) => PlannedPressure::Kernel(kernel),
@@ -212,7 +213,7 @@ impl Operators {
                 if !two_transforms.as_ref().is_some_and(serves) {
                     *two_transforms = None;
                 }
-                let make = || TwoTransforms::new(window, split, stop);
+                let make = || TwoTransforms::within(&room, window, split, stop);
                 let plan = match two_transforms {
                     Some(plan) => plan,
                     slot => slot.insert(recorder.timed(Part::Plans, make)?),

@@ -5,6 +5,7 @@ use super::convolution::Convolution;
 use super::direct::DirectSum;
 use super::influence::InfluenceOperator;
 use super::recipe::Costs;
+use super::transform::Room;
 use crate::geometry::{CellSet, Lengths, Window};
 use crate::kernel::{Invertible, KernelTable, Symmetric, Tensor};
 use crate::parts::{Part, Recorder};
@@ -23,12 +24,16 @@ pub struct Plans<const N: usize, const E: usize> {
     pub(super) single: Option<Convolution<f32, N, E>>,
     pub(super) shortened: Option<Convolution<f32, N, E>>,
     pub(super) torus: Option<Convolution<f32, N, E>>,
+    /// Of the spectra in single precision.
+    pub(super) room: Room<f32>,
     /// Applications of the kernel so far, all precisions together; each has N components.
     pub applications: usize,
     /// Number of linear systems so far: factorisations and runs of conjugate gradients.
     pub solves: usize,
     /// Steps of the fall-back so far, each of one of these applications.
     pub descent: usize,
+    /// Inner solves of contact so far that their number of steps ended.
+    pub limited: usize,
 }
 
 /// The operators of tangential tractions.
@@ -92,9 +97,11 @@ where
             single: None,
             shortened: None,
             torus: None,
+            room: Room::default(),
             applications: 0,
             solves: 0,
             descent: 0,
+            limited: 0,
         }
     }
 
@@ -102,8 +109,8 @@ where
     /// not on earlier windows.
     pub fn forget_plans(&mut self) {
         let fresh = Self::new(Arc::clone(&self.table), &self.tuning, &self.recorder);
-        let Self { applications, solves, descent, .. } = *self;
-        *self = Self { applications, solves, descent, ..fresh };
+        let Self { applications, solves, descent, limited, .. } = *self;
+        *self = Self { applications, solves, descent, limited, ..fresh };
     }
 
     /// The kernel.
@@ -219,10 +226,10 @@ where
         torus_lengths: Option<Lengths>,
         stop: Stop<'_>,
     ) -> Result<PlannedSystem<'_, N, E>, Interrupted> {
-        let Self { table, tuning, recorder, single, shortened, torus, .. } = self;
+        let Self { table, tuning, recorder, single, shortened, torus, room, .. } = self;
         let inverse = torus_lengths.map(|lengths| {
             planned(torus, window, (tuning, recorder), || {
-                Ok(Convolution::new(window, lengths, table.inverse_symbol(lengths, stop)?))
+                Ok(Convolution::within(room, window, lengths, table.inverse_symbol(lengths, stop)?))
             })
         });
         let inverse = inverse.transpose()?;
@@ -234,7 +241,7 @@ where
         let transform = planned(slot, window, (tuning, recorder), || {
             let symbol =
                 if exact { table.symbol_f32(lengths, stop) } else { table.shortened_symbol(lengths, stop) };
-            Ok(Convolution::new(window, lengths, symbol?))
+            Ok(Convolution::within(room, window, lengths, symbol?))
         })?;
         Ok((Planned::Fft(transform, part, recorder), inverse))
     }

@@ -8,15 +8,89 @@
 use crate::geometry::{Lengths, Window};
 use crate::real::Real;
 use crate::tasks::for_each;
-use crate::tuning::{BAND, CACHE_LINE, SQUARE, STRIPE_BYTES, WAVES};
+use crate::tuning::{BAND, CACHE_LINE, GROUP, GROUPED_BYTES, SQUARE, STRIPE_BYTES, WAVES};
 use contact_model::{Interrupted, Stop};
 use numerics::parallel::{threads_for, widest};
 use rustfft::Fft;
 use rustfft::num_complex::Complex;
 use std::fmt;
 use std::iter::zip;
-use std::ops::Range;
-use std::sync::Arc;
+use std::ops::{Deref, DerefMut, Range};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+/// Numbers that begin at a cache line: the vector instructions of a transform are slower across two of them.
+#[derive(Debug)]
+struct Aligned<A> {
+    values: Vec<A>,
+    start: usize,
+}
+
+impl<A> Default for Aligned<A> {
+    fn default() -> Self {
+        Self { values: Vec::new(), start: 0 }
+    }
+}
+
+impl<A: Clone + Default> Aligned<A> {
+    fn new(length: usize) -> Self {
+        let most = CACHE_LINE / size_of::<A>();
+        let mut values = vec![A::default(); length + most];
+        let start = values.as_ptr().align_offset(CACHE_LINE).min(most);
+        values.truncate(start + length);
+        Self { values, start }
+    }
+}
+
+impl<A> Deref for Aligned<A> {
+    type Target = [A];
+
+    fn deref(&self) -> &[A] {
+        &self.values[self.start..]
+    }
+}
+
+impl<A> DerefMut for Aligned<A> {
+    fn deref_mut(&mut self) -> &mut [A] {
+        &mut self.values[self.start..]
+    }
+}
+
+/// Room for the spectrum of one transform at a time, which lends it to the next: what lies in the cache is used
+/// again.
+#[derive(Debug)]
+pub struct Room<T>(Arc<Mutex<Aligned<Complex<T>>>>);
+
+impl<T> Default for Room<T> {
+    fn default() -> Self {
+        Self(Arc::default())
+    }
+}
+
+impl<T> Clone for Room<T> {
+    fn clone(&self) -> Self {
+        Self(Arc::clone(&self.0))
+    }
+}
+
+impl<T: Real> Room<T> {
+    fn place(&self) -> MutexGuard<'_, Aligned<Complex<T>>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Room for at least so many numbers, whatever they are.
+    fn take(&self, length: usize) -> Aligned<Complex<T>> {
+        let room = std::mem::take(&mut *self.place());
+        if room.len() < length { Aligned::new(length) } else { room }
+    }
+
+    /// Gives room back.
+    fn give(&self, room: Aligned<Complex<T>>) {
+        let mut place = self.place();
+        if place.len() < room.len() {
+            *place = room;
+        }
+    }
+}
 
 /// Planned transforms of N fields on a window, from rows to rows.
 ///
@@ -34,10 +108,11 @@ pub struct Transform<T: Real, const N: usize> {
     row_inverse: Arc<dyn Fft<T>>,
     column_forward: Arc<dyn Fft<T>>,
     column_inverse: Arc<dyn Fft<T>>,
-    /// Row spectra: of each stripe all rows, of each row the columns of the stripe; from `start` on (where a
-    /// cache line begins).
-    spectrum: Vec<Complex<T>>,
-    start: usize,
+    /// Row spectra while they are changed: of each stripe all rows, of each row the columns of the stripe.
+    spectrum: Aligned<Complex<T>>,
+    /// Their number, and where their room comes from.
+    length: usize,
+    room: Room<T>,
     /// The bands of rows that were given last.
     given: Vec<bool>,
     buffers: Vec<Buffers<T>>,
@@ -46,14 +121,14 @@ pub struct Transform<T: Real, const N: usize> {
 /// Buffers of one thread.
 struct Buffers<T: Real> {
     /// Two rows, one after the other.
-    rows: Vec<T>,
+    rows: Aligned<T>,
     /// Both as one complex row.
-    pair: Vec<Complex<T>>,
-    /// Its spectrum, the first value once more at the end.
-    spectrum: Vec<Complex<T>>,
+    pair: Aligned<Complex<T>>,
+    /// The spectra of a group of such pairs, each with its first value once more at the end.
+    spectra: Vec<Aligned<Complex<T>>>,
     /// Columns that share cache lines, one after the other.
-    columns: Vec<Complex<T>>,
-    scratch: Vec<Complex<T>>,
+    columns: Aligned<Complex<T>>,
+    scratch: Aligned<Complex<T>>,
 }
 
 impl<T: Real, const N: usize> fmt::Debug for Transform<T, N> {
@@ -70,13 +145,12 @@ impl<T: Real, const N: usize> Transform<T, N> {
 
     /// Plans for a window.
     ///
-    /// Memory: `N * height * (lx / 2 + 1)` complex numbers, and a few columns for each thread.
-    pub fn new(window: Window, lengths: Lengths) -> Self {
+    /// Memory: `N * height * (lx / 2 + 1)` complex numbers, of which one copy serves all transforms with the same
+    /// room, and a few columns for each thread.
+    pub fn new(window: Window, lengths: Lengths, room: &Room<T>) -> Self {
         let stripes = (lengths.x / 2 + 1).div_ceil(Self::STRIPE);
         let field = if N == 1 { window.height } else { window.height.next_multiple_of(BAND) };
         let rows = N * field;
-        let spectrum = vec![Complex::default(); stripes * Self::STRIPE * rows + Self::TOGETHER];
-        let start = spectrum.as_ptr().align_offset(CACHE_LINE);
         Self {
             window,
             lengths,
@@ -86,8 +160,9 @@ impl<T: Real, const N: usize> Transform<T, N> {
             row_inverse: T::inverse(lengths.x),
             column_forward: T::forward(lengths.y),
             column_inverse: T::inverse(lengths.y),
-            spectrum,
-            start: if start <= Self::TOGETHER { start } else { 0 },
+            spectrum: Aligned::default(),
+            length: stripes * Self::STRIPE * rows,
+            room: room.clone(),
             given: vec![false; rows.div_ceil(BAND)],
             buffers: Vec::new(),
         }
@@ -115,7 +190,6 @@ impl<T: Real, const N: usize> Transform<T, N> {
 
     /// Buffers for as many threads as the size of the transform justifies.
     fn make_buffers(&mut self) {
-        let zero = Complex::default();
         let Lengths { x, y } = self.lengths;
         let scratch = [
             self.row_forward.get_outofplace_scratch_len(),
@@ -124,12 +198,13 @@ impl<T: Real, const N: usize> Transform<T, N> {
             self.column_inverse.get_inplace_scratch_len(),
         ];
         let scratch = scratch.into_iter().max().unwrap_or(0);
+        let pairs = if self.length * size_of::<Complex<T>>() < GROUPED_BYTES { 1 } else { GROUP };
         self.buffers.resize_with(threads_for(self.lengths.points()), || Buffers {
-            rows: vec![T::default(); 2 * self.window.width],
-            pair: vec![zero; x],
-            spectrum: vec![zero; x + 1],
-            columns: vec![zero; N * Self::TOGETHER * Self::pitch(y)],
-            scratch: vec![zero; scratch],
+            rows: Aligned::new(2 * self.window.width),
+            pair: Aligned::new(x),
+            spectra: (0..pairs).map(|_| Aligned::new(x + 1)).collect(),
+            columns: Aligned::new(N * Self::TOGETHER * Self::pitch(y)),
+            scratch: Aligned::new(scratch),
         });
     }
 
@@ -150,13 +225,16 @@ impl<T: Real, const N: usize> Transform<T, N> {
         stop: Stop<'_>,
     ) -> Result<(), Interrupted> {
         self.make_buffers();
+        if self.spectrum.len() < self.length {
+            self.spectrum = self.room.take(self.length);
+        }
         let Self { window: Window { width, .. }, field, row_forward, buffers, .. } = self;
         let (width, height) = (*width, N * *field);
         for (band, any) in self.given.iter_mut().enumerate() {
             *any = (band * BAND..((band + 1) * BAND).min(height)).any(&given);
         }
         let mut bands: Vec<Vec<&mut [Complex<T>]>> = self.given.iter().map(|_| Vec::new()).collect();
-        for stripe in self.spectrum[self.start..].chunks_exact_mut(Self::STRIPE * height) {
+        for stripe in self.spectrum[..self.length].chunks_exact_mut(Self::STRIPE * height) {
             for (band, piece) in bands.iter_mut().zip(stripe.chunks_mut(Self::STRIPE * BAND)) {
                 band.push(piece);
             }
@@ -164,8 +242,8 @@ impl<T: Real, const N: usize> Transform<T, N> {
         let known = &self.given;
         let bands: Vec<_> = bands.into_iter().enumerate().filter(|(band, _)| known[*band]).collect();
         for_each(buffers, bands.into_iter(), stop, |buffer, (band, mut pieces)| {
-            let Buffers { rows, pair, spectrum, scratch, .. } = buffer;
-            let first = band * BAND;
+            let Buffers { rows, pair, spectra, scratch, .. } = buffer;
+            let (first, length) = (band * BAND, pair.len());
             let mut numbers = Vec::with_capacity(BAND);
             for y in first..(first + BAND).min(height) {
                 if given(y) {
@@ -176,18 +254,22 @@ impl<T: Real, const N: usize> Transform<T, N> {
                     }
                 }
             }
-            for numbers in numbers.chunks(2) {
-                rows.fill(T::default());
-                for (&y, row) in zip(numbers, rows.chunks_exact_mut(width)) {
-                    fill(y, row);
+            for group in numbers.chunks(2 * spectra.len()) {
+                let mut places = [[None; 2]; GROUP];
+                for (numbers, (spectrum, place)) in zip(group.chunks(2), zip(&mut *spectra, &mut places)) {
+                    rows.fill(T::default());
+                    for (&y, row) in zip(numbers, rows.chunks_exact_mut(width)) {
+                        fill(y, row);
+                    }
+                    let (a, b) = rows.split_at(width);
+                    pair_up(a, b, pair);
+                    row_forward.process_outofplace_with_scratch(pair, &mut spectrum[..length], scratch);
+                    spectrum[length] = spectrum[0];
+                    let at = |i: usize| Some((numbers.get(i)? - first) * Self::STRIPE);
+                    *place = [at(0), at(1)];
                 }
-                let (a, b) = rows.split_at(width);
-                pair_up(a, b, pair);
-                let length = pair.len();
-                row_forward.process_outofplace_with_scratch(pair, &mut spectrum[..length], scratch);
-                spectrum[length] = spectrum[0];
-                let at = |i: usize| Some((numbers.get(i)? - first) * Self::STRIPE);
-                take_apart(spectrum, &mut pieces, Self::STRIPE, [at(0), at(1)]);
+                let pairs = group.len().div_ceil(2);
+                take_apart(&spectra[..pairs], &mut pieces, Self::STRIPE, &places[..pairs]);
             }
         })
     }
@@ -217,7 +299,7 @@ impl<T: Real, const N: usize> Transform<T, N> {
         let sources: [_; N] = std::array::from_fn(|i| rows(i, &given));
         let targets: [_; N] = std::array::from_fn(|i| rows(i, &any));
         let (pitch, waves) = (Self::pitch(lengths.y), lengths.x / 2 + 1);
-        let stripes = self.spectrum[self.start..].chunks_exact_mut(Self::STRIPE * N * field);
+        let stripes = self.spectrum[..self.length].chunks_exact_mut(Self::STRIPE * N * field);
         for_each(buffers, stripes.enumerate(), stop, |buffer, (number, stripe)| {
             let Buffers { columns, scratch, .. } = buffer;
             let each = Self::TOGETHER * pitch;
@@ -273,24 +355,39 @@ impl<T: Real, const N: usize> Transform<T, N> {
     ) -> Result<(), Interrupted> {
         let Self { window: Window { width, .. }, field, row_inverse, buffers, .. } = self;
         let (width, height) = (*width, N * *field);
-        let stripes: Vec<_> = self.spectrum[self.start..].chunks_exact(Self::STRIPE * height).collect();
+        let stripes: Vec<_> = self.spectrum[..self.length].chunks_exact(Self::STRIPE * height).collect();
         for_each(buffers, outputs.enumerate(), stop, |buffer, (band, mut output)| {
-            let Buffers { rows, pair, spectrum, scratch, .. } = buffer;
+            let Buffers { rows, pair, spectra, scratch, .. } = buffer;
+            let length = pair.len();
             let mut numbers = (band * BAND..((band + 1) * BAND).min(height)).filter(|&y| wanted(y));
-            while let Some(y) = numbers.next() {
-                // The last one may be alone: then it is both.
-                let numbers = [y, numbers.next().unwrap_or(y)];
-                put_together(&stripes, Self::STRIPE, numbers.map(|y| y * Self::STRIPE), spectrum);
-                let length = pair.len();
-                row_inverse.process_outofplace_with_scratch(&mut spectrum[..length], pair, scratch);
-                let (a, b) = rows.split_at_mut(width);
-                separate(pair, a, b);
-                take(&mut output, y, a);
-                if numbers[1] != y {
-                    take(&mut output, numbers[1], b);
+            loop {
+                let mut group = [[0; 2]; GROUP];
+                let mut pairs = 0;
+                while pairs < spectra.len()
+                    && let Some(y) = numbers.next()
+                {
+                    // The last one may be alone: then it is both.
+                    group[pairs] = [y, numbers.next().unwrap_or(y)];
+                    pairs += 1;
+                }
+                if pairs == 0 {
+                    break;
+                }
+                let places = group.map(|numbers| numbers.map(|y| y * Self::STRIPE));
+                put_together(&stripes, Self::STRIPE, &places[..pairs], &mut spectra[..pairs]);
+                for (&[y, other], spectrum) in zip(&group[..pairs], &mut *spectra) {
+                    row_inverse.process_outofplace_with_scratch(&mut spectrum[..length], pair, scratch);
+                    let (a, b) = rows.split_at_mut(width);
+                    separate(pair, a, b);
+                    take(&mut output, y, a);
+                    if other != y {
+                        take(&mut output, other, b);
+                    }
                 }
             }
-        })
+        })?;
+        self.room.give(std::mem::take(&mut self.spectrum));
+        Ok(())
     }
 }
 
@@ -320,15 +417,15 @@ fn separate<T: Real>(pair: &[Complex<T>], a: &mut [T], b: &mut [T]) {
     );
 }
 
-/// Writes the spectra of two real rows to the places `at` in each stripe, from that of the complex row that
+/// Writes the spectra of pairs of real rows to their places in each stripe, from those of the complex rows that
 /// both were, given on all waves and once more at the end on the first.
 fn take_apart<T: Real>(
-    spectrum: &[Complex<T>],
+    spectra: &[Aligned<Complex<T>>],
     stripes: &mut [&mut [Complex<T>]],
     width: usize,
-    at: [Option<usize>; 2],
+    places: &[[Option<usize>; 2]],
 ) {
-    let length = spectrum.len() - 1;
+    let Some(length) = spectra.first().map(|spectrum| spectrum.len() - 1) else { return };
     let waves = length / 2 + 1;
     let half = T::of(0.5);
     let of_a = move |own: Complex<T>, opposite: Complex<T>| {
@@ -344,12 +441,15 @@ fn take_apart<T: Real>(
         move || {
             for (stripe, first) in zip(stripes, (0..waves).step_by(width)) {
                 let end = (first + width).min(waves);
-                let (own, opposite) = (&spectrum[first..end], &spectrum[length + 1 - end..=length - first]);
-                if let Some(at) = at[0] {
-                    from_both(own, opposite, &mut stripe[at..][..own.len()], of_a);
-                }
-                if let Some(at) = at[1] {
-                    from_both(own, opposite, &mut stripe[at..][..own.len()], of_b);
+                for (spectrum, at) in zip(spectra, places) {
+                    let (own, opposite) =
+                        (&spectrum[first..end], &spectrum[length + 1 - end..=length - first]);
+                    if let Some(at) = at[0] {
+                        from_both(own, opposite, &mut stripe[at..][..own.len()], of_a);
+                    }
+                    if let Some(at) = at[1] {
+                        from_both(own, opposite, &mut stripe[at..][..own.len()], of_b);
+                    }
                 }
             }
         },
@@ -381,63 +481,80 @@ fn from_both<T: Real>(
     }
 }
 
-/// The inverse of [`take_apart`]: the spectrum of the complex row from those of two real ones at the places
-/// `at` in each stripe.
+/// The inverse of [`take_apart`]: the spectra of complex rows from those of pairs of real ones at their places in
+/// each stripe.
 fn put_together<T: Real>(
     stripes: &[&[Complex<T>]],
     width: usize,
-    at: [usize; 2],
-    spectrum: &mut [Complex<T>],
+    places: &[[usize; 2]],
+    spectra: &mut [Aligned<Complex<T>>],
 ) {
-    let length = spectrum.len() - 1;
+    let Some(length) = spectra.first().map(|spectrum| spectrum.len() - 1) else { return };
     let waves = length / 2 + 1;
-    let end = |k: usize| {
-        let [re, im] = at.map(|at| stripes[k / width][at + k % width].re);
-        Complex { re, im }
-    };
-    let ends = [end(0), end(waves - 1)];
-    let (own, opposite) = spectrum.split_at_mut(waves);
+    let all = &mut *spectra;
     widest(
         #[inline(always)]
         move || {
             for (stripe, first) in zip(stripes, (0..waves).step_by(width)) {
-                let own = &mut own[first..(first + width).min(waves)];
-                let (a, b) = (&stripe[at[0]..][..own.len()], &stripe[at[1]..][..own.len()]);
-                let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<WAVES>(), b.as_chunks::<WAVES>());
-                let end = opposite.len().saturating_sub(first);
-                let (opposite_rest, opposite) =
-                    opposite[end.saturating_sub(own.len())..end].as_rchunks_mut::<WAVES>();
-                let (own, own_rest) = own.as_chunks_mut::<WAVES>();
-                for (own, (a, b)) in zip(own, zip(a, b)) {
-                    let mut values = [Complex::default(); WAVES];
-                    for (value, (a, b)) in zip(&mut values, zip(a, b)) {
-                        *value = Complex { re: a.re - b.im, im: a.im + b.re };
-                    }
-                    *own = values;
-                }
-                for (own, (a, b)) in zip(own_rest, zip(a_rest, b_rest)) {
-                    *own = Complex { re: a.re - b.im, im: a.im + b.re };
-                }
-                let left_out = a.len() - opposite.len();
-                for (opposite, (a, b)) in zip(opposite.iter_mut().rev(), zip(a, b)) {
-                    let mut values = [Complex::default(); WAVES];
-                    for (value, (a, b)) in zip(values.iter_mut().rev(), zip(a, b)) {
-                        *value = Complex { re: a.re + b.im, im: b.re - a.im };
-                    }
-                    *opposite = values;
-                }
-                let (a, b) = (&a[a.len() - left_out..], &b[b.len() - left_out..]);
-                let rest = zip(a.as_flattened().iter().chain(a_rest), b.as_flattened().iter().chain(b_rest));
-                for (opposite, (a, b)) in zip(opposite_rest.iter_mut().rev(), rest) {
-                    *opposite = Complex { re: a.re + b.im, im: b.re - a.im };
+                for (spectrum, at) in zip(&mut *all, places) {
+                    combine(stripe, *at, first, width, spectrum);
                 }
             }
         },
     );
     // The spectrum of a real row has real ends; rounding may say otherwise.
-    spectrum[0] = ends[0];
-    if length.is_multiple_of(2) {
-        spectrum[waves - 1] = ends[1];
+    for (spectrum, at) in zip(spectra, places) {
+        let end = |k: usize| {
+            let [re, im] = at.map(|at| stripes[k / width][at + k % width].re);
+            Complex { re, im }
+        };
+        spectrum[0] = end(0);
+        if length.is_multiple_of(2) {
+            spectrum[waves - 1] = end(waves - 1);
+        }
+    }
+}
+
+/// The part of [`put_together`] for one pair and the stripe of the waves from `first` on.
+#[expect(clippy::inline_always, reason = "a call would lose the instructions of its caller")]
+#[inline(always)]
+fn combine<T: Real>(
+    stripe: &[Complex<T>],
+    at: [usize; 2],
+    first: usize,
+    width: usize,
+    spectrum: &mut [Complex<T>],
+) {
+    let waves = (spectrum.len() - 1) / 2 + 1;
+    let (own, opposite) = spectrum.split_at_mut(waves);
+    let own = &mut own[first..(first + width).min(waves)];
+    let (a, b) = (&stripe[at[0]..][..own.len()], &stripe[at[1]..][..own.len()]);
+    let ((a, a_rest), (b, b_rest)) = (a.as_chunks::<WAVES>(), b.as_chunks::<WAVES>());
+    let end = opposite.len().saturating_sub(first);
+    let (opposite_rest, opposite) = opposite[end.saturating_sub(own.len())..end].as_rchunks_mut::<WAVES>();
+    let (own, own_rest) = own.as_chunks_mut::<WAVES>();
+    for (own, (a, b)) in zip(own, zip(a, b)) {
+        let mut values = [Complex::default(); WAVES];
+        for (value, (a, b)) in zip(&mut values, zip(a, b)) {
+            *value = Complex { re: a.re - b.im, im: a.im + b.re };
+        }
+        *own = values;
+    }
+    for (own, (a, b)) in zip(own_rest, zip(a_rest, b_rest)) {
+        *own = Complex { re: a.re - b.im, im: a.im + b.re };
+    }
+    let left_out = a.len() - opposite.len();
+    for (opposite, (a, b)) in zip(opposite.iter_mut().rev(), zip(a, b)) {
+        let mut values = [Complex::default(); WAVES];
+        for (value, (a, b)) in zip(values.iter_mut().rev(), zip(a, b)) {
+            *value = Complex { re: a.re + b.im, im: b.re - a.im };
+        }
+        *opposite = values;
+    }
+    let (a, b) = (&a[a.len() - left_out..], &b[b.len() - left_out..]);
+    let rest = zip(a.as_flattened().iter().chain(a_rest), b.as_flattened().iter().chain(b_rest));
+    for (opposite, (a, b)) in zip(opposite_rest.iter_mut().rev(), rest) {
+        *opposite = Complex { re: a.re + b.im, im: b.re - a.im };
     }
 }
 

@@ -4,11 +4,13 @@
 //! convolution needs a torus of n + R - 1 cells along a side instead of the 2 (n - 1) of the whole kernel.
 //! That is about a quarter of the points. Since half of the rows of the whole transform are empty, and
 //! interpolation takes time as well, an application takes 0.7 to 0.8 of the time (N = 512 to 2048, all cells,
-//! one thread of an EPYC, 2026-11). Interpolation is separable; along rows it is done where they are read and
-//! written anyway. In single precision, for square cells and the free kernel.
+//! one thread of an EPYC, 2026-11). Interpolation is separable: between rows it takes whole rows of cells, and along
+//! rows, where numbers have to change their places, it is done for the rows of nodes alone, which are fewer. In
+//! single precision, for square cells and the free kernel.
 
 use super::convolution::{FftConvolution, Rounded};
 use super::influence::InfluenceOperator;
+use super::transform::Room;
 use super::two_level::Split;
 use crate::geometry::{CellSet, Window};
 use crate::kernel::Symbol;
@@ -17,13 +19,20 @@ use crate::tuning::{BAND, LANES};
 use contact_model::{Interrupted, Stop};
 use numerics::parallel::widest;
 use std::fmt;
+use std::iter::zip;
+use std::ops::Range;
 
 /// Spacing of the lattice in cells: half of it would make the lattice's transform as large as the window's,
 /// twice as much is less accurate at the same radius.
 const SPACING: usize = 4;
 
-/// The targets of a band of rows, with room for a line of nodes and one of cells.
-type NearBand<'u> = ((usize, &'u mut [f32]), Vec<f32>, Vec<f32>);
+/// Rows of nodes that a thread takes at a time; the rows of cells around the first and the last of them are spread
+/// once more by its neighbours.
+const NODE_BAND: usize = 2 * BAND;
+/// Columns whose sums stay in registers.
+const HELD: usize = 2 * LANES;
+/// With less than one target in this number of cells of a row, the far field is interpolated cell by cell.
+const SCATTERED: usize = 4;
 
 /// A planned operator for sets inside one window.
 pub struct TwoTransforms {
@@ -33,9 +42,9 @@ pub struct TwoTransforms {
     interpolation: Interpolation,
     near: FftConvolution<f32>,
     far: FftConvolution<f32>,
-    /// The pressure of each row of cells on the columns of nodes.
-    rows: Vec<f32>,
-    /// The far field on the nodes.
+    /// The pressure on the nodes.
+    charges: Vec<f32>,
+    /// The far field at the cells of a row, for each row of nodes.
     potential: Vec<f32>,
     rounded: Rounded,
 }
@@ -60,6 +69,19 @@ impl TwoTransforms {
     /// # Errors
     /// As [`Symbol::with_parity_until`].
     pub fn new(window: Window, split: Split, stop: Stop<'_>) -> Result<Self, Interrupted> {
+        Self::within(&Room::default(), window, split, stop)
+    }
+
+    /// The same with its spectra in a room that other transforms use too.
+    ///
+    /// # Errors
+    /// As [`Symbol::with_parity_until`].
+    pub fn within(
+        room: &Room<f32>,
+        window: Window,
+        split: Split,
+        stop: Stop<'_>,
+    ) -> Result<Self, Interrupted> {
         let near = Symbol::of_kernel_until(split.near_lengths(window), |x, y| split.near(x, y), stop)?;
         let lattice = split.lattice(window);
         let local = Window { x: 0, y: 0, ..lattice };
@@ -69,10 +91,10 @@ impl TwoTransforms {
             window,
             split,
             lattice,
-            near: FftConvolution::new(window, near.lengths, near.scaled()),
-            far: FftConvolution::new(local, far.lengths, far.scaled()),
-            rows: vec![0.0; window.height * interpolation.nodes],
-            potential: vec![0.0; lattice.height * interpolation.nodes],
+            near: FftConvolution::within(room, window, near.lengths, near.scaled()),
+            far: FftConvolution::within(room, local, far.lengths, far.scaled()),
+            charges: vec![0.0; lattice.height * interpolation.nodes],
+            potential: vec![0.0; lattice.height * interpolation.cells()],
             interpolation,
             rounded: Rounded::default(),
         })
@@ -88,58 +110,50 @@ impl TwoTransforms {
         self.split
     }
 
-    /// The pressure of each row of cells on the columns of nodes.
+    /// The pressure on the nodes.
     fn restrict(&mut self, sources: &CellSet, p: &[f32], stop: Stop<'_>) -> Result<(), Interrupted> {
-        let Self { window, lattice, interpolation, rows, .. } = self;
-        let (nodes, x0) = (interpolation.nodes, lattice.x * SPACING);
-        let bands = rows.chunks_mut(BAND * nodes).enumerate();
+        let Self { window, lattice, interpolation, charges, .. } = self;
+        let (nodes, width) = (interpolation.nodes, interpolation.cells());
+        let bands = charges.chunks_mut(NODE_BAND * nodes).enumerate();
         each(window.count(), bands, stop, |(band, lines)| {
-            let first = window.y + band * BAND;
-            let mut cells = interpolation.cells();
-            let mut phases = interpolation.phases();
-            lines.fill(0.0);
-            for row in sources.rows_within(first..first + BAND) {
-                row.spread(p, &mut cells, x0);
-                let line = &mut lines[(row.y - first) * nodes..][..nodes];
-                interpolation.restrict(&cells, &mut phases, line);
-                row.fill(0.0, &mut cells, x0);
+            let mut around = RowsAround::new(interpolation.order, width);
+            let (mut sum, mut phases) = (vec![0.0; width], interpolation.phases());
+            for (i, line) in lines.chunks_exact_mut(nodes).enumerate() {
+                let node = lattice.y + band * NODE_BAND + i;
+                around.advance(node, |y, cells| {
+                    sources.row(y).inspect(|row| row.spread(p, cells, lattice.x * SPACING)).is_some()
+                });
+                let weighted: Vec<_> = around.weighted(node, &interpolation.of_nodes).collect();
+                sum.fill(0.0);
+                add_weighted(weighted.iter().copied(), &mut sum);
+                interpolation.restrict(&sum, &mut phases, line);
             }
         })
     }
 
-    /// The far field on the nodes.
+    /// The far field at the cells of a row, for each row of nodes.
     fn convolve_far(&mut self, stop: Stop<'_>) -> Result<(), Interrupted> {
-        let Self { window, split, lattice, interpolation, far, rows, potential, .. } = self;
-        let order = split.order;
-        let (nodes, blocks) = (interpolation.nodes, lattice.height + 1 - order);
+        let Self { lattice, interpolation, far, charges, potential, .. } = self;
+        let (interpolation, charges, width) = (&*interpolation, &charges[..], interpolation.cells());
+        let nodes = interpolation.nodes;
         far.forward(
             |_, _| true,
-            |_, ny, out| {
-                let (window, lattice, interpolation, rows) =
-                    (&*window, &*lattice, &*interpolation, &rows[..]);
-                widest(
-                    #[inline(always)]
-                    move || {
-                        // The cells between which nodes this one is.
-                        for block in (ny + 1).saturating_sub(order)..(ny + 1).min(blocks) {
-                            for (phase, weight) in interpolation.of_nodes[ny - block].iter().enumerate() {
-                                let y = (lattice.y + block) * SPACING + phase;
-                                if (window.y..window.y + window.height).contains(&y) {
-                                    add(out, *weight, &rows[(y - window.y) * nodes..]);
-                                }
-                            }
-                        }
-                    },
-                );
-            },
+            |_, y, out| out.copy_from_slice(&charges[y * nodes..][..lattice.width]),
             stop,
         )?;
         far.multiply(|_| true, stop)?;
-        let outputs = potential.chunks_mut(BAND * nodes);
+        let outputs = potential.chunks_mut(BAND * width).map(|lines| (lines, vec![0.0; nodes]));
         far.backward(
             |_| true,
             outputs,
-            |output, _, y, row| output[y % BAND * nodes..][..row.len()].copy_from_slice(row),
+            |(lines, padded): &mut (&mut [f32], Vec<f32>), _, y, row| {
+                padded[..row.len()].copy_from_slice(row);
+                let (padded, cells) = (&padded[..], &mut lines[y % BAND * width..][..width]);
+                widest(
+                    #[inline(always)]
+                    move || interpolation.interpolate(padded, cells),
+                );
+            },
             stop,
         )
     }
@@ -155,7 +169,7 @@ impl TwoTransforms {
     ) -> Result<(), Interrupted> {
         let Self { window, lattice, interpolation, near, potential, .. } = self;
         let Window { x: x0, y: y0, width, .. } = *window;
-        let (nodes, begin) = (interpolation.nodes, x0 - lattice.x * SPACING);
+        let (cells, begin) = (interpolation.cells(), x0 - lattice.x * SPACING);
         let held = |y: usize| targets.row(y + y0).is_some();
         near.forward(
             |_, y| sources.row(y + y0).is_some(),
@@ -168,26 +182,20 @@ impl TwoTransforms {
         )?;
         near.multiply(held, stop)?;
         let outputs = targets.split(u, near.bands().map(|y| y + y0)).into_iter();
-        let outputs = outputs.map(|output| (output, vec![0.0; nodes], interpolation.cells()));
-        let take = |((start, u), between, cells): &mut NearBand<'_>, _: usize, y: usize, line: &mut [f32]| {
+        let take = |(start, u): &mut (usize, &mut [f32]), _: usize, y: usize, line: &mut [f32]| {
             let Some(row) = targets.row(y + y0) else { return };
-            let block = row.y / SPACING - lattice.y;
-            let weights = &interpolation.weights[row.y % SPACING];
-            let (interpolation, potential, line) = (&*interpolation, &potential[block * nodes..], &*line);
-            let (between, cells) = (&mut between[..], &mut cells[..]);
-            let far = &mut *cells;
-            widest(
-                #[inline(always)]
-                move || {
-                    between.fill(0.0);
-                    for (&weight, potential) in weights.iter().zip(potential.chunks_exact(nodes)) {
-                        add(between, weight, potential);
-                    }
-                    interpolation.interpolate(between, far);
-                    add(&mut far[begin..begin + width], 1.0, line);
-                },
-            );
-            row.after(*start).collect(&cells[begin..begin + width], u, x0);
+            let lines = potential[(row.y / SPACING - lattice.y) * cells..].chunks_exact(cells);
+            let weighted = zip(&interpolation.weights[row.y % SPACING], lines);
+            let weighted = weighted.map(|(&weight, far)| (weight, &far[begin..begin + width]));
+            if row.columns.len() * SCATTERED < width {
+                for &x in row.columns {
+                    let x = x as usize - x0;
+                    line[x] += weighted.clone().map(|(weight, far)| weight * far[x]).sum::<f32>();
+                }
+            } else {
+                add_weighted(weighted, line);
+            }
+            row.after(*start).collect(line, u, x0);
         };
         near.backward(held, outputs, take, stop)
     }
@@ -229,12 +237,80 @@ impl InfluenceOperator<f64> for TwoTransforms {
     }
 }
 
-/// `to += factor from`, as far as both go.
-#[expect(clippy::inline_always, reason = "a call would lose the instructions of its caller")]
-#[inline(always)]
-fn add(to: &mut [f32], factor: f32, from: &[f32]) {
-    for (to, &from) in to.iter_mut().zip(from) {
-        *to += factor * from;
+/// Adds lines of the same length, each with its weight: a few columns of all lines at a time, whose sums stay in
+/// registers.
+fn add_weighted<'l>(lines: impl Iterator<Item = (f32, &'l [f32])> + Clone, to: &mut [f32]) {
+    widest(
+        #[inline(always)]
+        move || {
+            let (chunks, rest) = to.as_chunks_mut::<HELD>();
+            let whole = chunks.len() * HELD;
+            for (i, chunk) in chunks.iter_mut().enumerate() {
+                let mut sums = *chunk;
+                for (weight, line) in lines.clone() {
+                    for (sum, value) in sums.iter_mut().zip(&line[i * HELD..][..HELD]) {
+                        *sum += weight * value;
+                    }
+                }
+                *chunk = sums;
+            }
+            for (weight, line) in lines {
+                for (sum, value) in rest.iter_mut().zip(&line[whole..]) {
+                    *sum += weight * value;
+                }
+            }
+        },
+    );
+}
+
+/// The rows of cells around a row of nodes, which go on with it: row y at place y modulo their number.
+struct RowsAround {
+    order: usize,
+    width: usize,
+    cells: Vec<f32>,
+    /// Which of them have a pressure.
+    pressed: Vec<bool>,
+    /// The rows before this one are known.
+    next: usize,
+}
+
+impl RowsAround {
+    fn new(order: usize, width: usize) -> Self {
+        let count = order * SPACING;
+        Self { order, width, cells: vec![0.0; count * width], pressed: vec![false; count], next: 0 }
+    }
+
+    /// The blocks of rows between whose nodes a node is.
+    fn blocks(&self, node: usize) -> Range<usize> {
+        (node + 1).saturating_sub(self.order)..node + 1
+    }
+
+    /// Goes on to the rows around a node: `fill` writes row y, which is zero before, and says whether it has a
+    /// pressure.
+    fn advance(&mut self, node: usize, fill: impl Fn(usize, &mut [f32]) -> bool) {
+        let blocks = self.blocks(node);
+        for y in self.next.max(blocks.start * SPACING)..blocks.end * SPACING {
+            let place = y % self.pressed.len();
+            let cells = &mut self.cells[place * self.width..][..self.width];
+            if self.pressed[place] {
+                cells.fill(0.0);
+            }
+            self.pressed[place] = fill(y, cells);
+        }
+        self.next = blocks.end * SPACING;
+    }
+
+    /// The rows with a pressure around a node, each with its weight.
+    fn weighted<'r>(
+        &'r self,
+        node: usize,
+        of_nodes: &'r [[f32; SPACING]],
+    ) -> impl Iterator<Item = (f32, &'r [f32])> {
+        let rows = self.blocks(node).flat_map(move |block| zip(block * SPACING.., of_nodes[node - block]));
+        rows.filter_map(|(y, weight)| {
+            let place = y % self.pressed.len();
+            self.pressed[place].then(|| (weight, &self.cells[place * self.width..][..self.width]))
+        })
     }
 }
 
@@ -270,9 +346,9 @@ impl Interpolation {
         }
     }
 
-    /// A line of cells.
-    fn cells(&self) -> Vec<f32> {
-        vec![0.0; self.blocks * SPACING]
+    /// Cells of a line.
+    fn cells(&self) -> usize {
+        self.blocks * SPACING
     }
 
     /// Room for the cells of a line, those of each place between two nodes for themselves, with zeros on both
@@ -402,7 +478,7 @@ mod tests {
     fn restriction_is_the_transpose_of_interpolation() {
         let interpolation = Interpolation::new(TwoTransforms::split_at(12, 6), 40);
         let value = |i: usize, seed: f32| (seed * i as f32).sin();
-        let mut cells = interpolation.cells();
+        let mut cells = vec![0.0; interpolation.cells()];
         let mut nodes: Vec<f32> = (0..interpolation.nodes).map(|i| value(i, 0.7)).collect();
         // Nodes beyond those of the line see no cell.
         nodes[interpolation.blocks + interpolation.order - 1..].fill(0.0);

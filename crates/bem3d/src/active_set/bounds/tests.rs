@@ -14,7 +14,8 @@ use std::sync::Arc;
 mod reference;
 
 /// Bound of the residuals, as a share of the approach.
-const TIGHT: Limits = Limits { tolerance: 1e-10, height: None, outer_iterations: 200, factor: true };
+const TIGHT: Limits =
+    Limits { tolerance: 1e-10, height: None, outer_iterations: 200, factor: true, is_guess: false };
 /// Error that these residuals allow in the pressure of a few cells, relative.
 const SAME: f64 = 1e-7;
 /// Where a solution is nearer to a tie than this share of the hardness or of the approach, a cell may be

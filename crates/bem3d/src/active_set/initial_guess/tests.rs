@@ -31,7 +31,13 @@ mod tangent {
             })
             .collect();
         let mut problem = problem(grid, z);
-        let limits = Limits { tolerance: 1e-9, height: Some(1.0), outer_iterations: 200, factor: false };
+        let limits = Limits {
+            tolerance: 1e-9,
+            height: Some(1.0),
+            outer_iterations: 200,
+            factor: false,
+            is_guess: false,
+        };
         let states = forces
             .iter()
             .map(|&force| {
@@ -175,7 +181,7 @@ fn a_guess_predicts_the_cells_that_it_makes_penetrate() {
 }
 
 fn limits() -> Limits {
-    Limits { tolerance: 1e-6, height: Some(1.0), outer_iterations: 50, factor: false }
+    Limits { tolerance: 1e-6, height: Some(1.0), outer_iterations: 50, factor: false, is_guess: false }
 }
 
 /// A broad hill with one needle on its flank that no coarse grid sees as a summit, and an undefined point.

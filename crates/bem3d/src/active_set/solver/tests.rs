@@ -11,6 +11,7 @@ use crate::tuning::Tuning;
 use approx::assert_relative_eq;
 use contact_model::{Boundary, never};
 use proptest::prelude::*;
+use std::iter::zip;
 use std::sync::Arc;
 
 mod outer_iteration;
@@ -25,7 +26,7 @@ fn problem(grid: Grid, z: &[f64], tuning: Tuning) -> Problem {
 }
 
 fn limits(factor: bool) -> Limits {
-    Limits { tolerance: TOLERANCE, height: Some(1.0), outer_iterations: 200, factor }
+    Limits { tolerance: TOLERANCE, height: Some(1.0), outer_iterations: 200, factor, is_guess: false }
 }
 
 /// Uniform pressure everywhere.
@@ -231,6 +232,41 @@ fn a_resumed_state_is_not_evaluated_again() {
         assert_eq!(same.contact, contact);
         assert_relative_eq!(same.d, d);
         assert_relative_eq!(same.residuals.worst(), residuals.worst());
+    }
+}
+
+#[test]
+fn a_guess_takes_no_application_in_double_precision() {
+    let grid = Grid::square(128, 128);
+    let (target, z) = (Control::Force(800.0), rough(grid, 6));
+    let table = NormalTable::shared(grid, Boundary::Free);
+    for is_guess in [false, true] {
+        let recorder = Recorder::new(|| 0);
+        let (z, tuning) = (Arc::new(z.clone()), Tuning::DEFAULT);
+        let mut problem = Problem::recorded(grid, z, Boundary::Free, &tuning, &recorder);
+        let limits = Limits { tolerance: 1e-2, is_guess, ..limits(false) };
+        let solved = solve(&mut problem, target, everything(grid, target), limits, &never).unwrap();
+        assert_eq!(solved.status, Status::Converged);
+        assert_eq!(recorder.take().iter().all(|(part, _)| *part != Part::Double), is_guess);
+        // What it says of itself is right up to single precision.
+        let (checked, mut u) = (CellSet::all(grid), vec![0.0; grid.count()]);
+        DirectSum(&table).apply(&solved.contact, &solved.p, &checked, &mut u);
+        let deepest = zip(&u, problem.candidates.z()).map(|(u, z)| solved.d - u - z).fold(0.0, f64::max);
+        assert!(deepest < 1.01 * 1e-2, "{deepest}");
+    }
+}
+
+#[test]
+fn inner_solves_that_their_steps_end_are_counted() {
+    let grid = Grid::square(48, 48);
+    let target = Control::Force(40.0);
+    for (inner_steps, limited) in [(Tuning::DEFAULT.inner_steps, false), (1, true)] {
+        let tuning = Tuning { inner_steps, ..Tuning::DEFAULT };
+        let mut problem = problem(grid, &rough(grid, 3), tuning);
+        let solved = solve(&mut problem, target, everything(grid, target), limits(false), &never).unwrap();
+        assert_eq!(solved.status, Status::Converged);
+        let plans = &problem.operators.plans;
+        assert_eq!(plans.limited > 0, limited, "{} of {} solves", plans.limited, plans.solves);
     }
 }
 

@@ -18,7 +18,8 @@ impl RigidElasticPair {
     }
 }
 
-const NORMAL: Limits = Limits { tolerance: 1e-10, height: None, outer_iterations: 200, factor: true };
+const NORMAL: Limits =
+    Limits { tolerance: 1e-10, height: None, outer_iterations: 200, factor: true, is_guess: false };
 const TANGENTIAL: FrictionLimits = FrictionLimits { tolerance: 1e-11, unresolved: 1e-11, iterations: 100 };
 
 /// Undeformed gaps of a surface that is curved and rough.

@@ -57,7 +57,7 @@ fn state(grid: Grid, p: &[f64], gap: Vec<f64>) -> Solved {
     let p = p.iter().copied().filter(|&p| p > 0.0).collect();
     // All fields but these are those of a solve that has nothing to do.
     let guess = Guess { set: CellSet::from_index(grid, &[0]), p: vec![1.0], d: 1.0 };
-    let limits = Limits { tolerance: 0.5, height: None, outer_iterations: 0, factor: false };
+    let limits = Limits { tolerance: 0.5, height: None, outer_iterations: 0, factor: false, is_guess: false };
     let problem = &mut flat(grid, Tuning::DEFAULT);
     let mut state = active_set::solve(problem, Control::Approach(1.0), guess, limits, &never).unwrap();
     (state.continuation.checked, state.continuation.gap) = (checked, gap);
@@ -89,7 +89,8 @@ fn full_contact_of_small_squares() {
             let mut problem = flat(grid, tuning);
             let (set, p) = (CellSet::all(grid), vec![1.0; grid.count()]);
             let guess = Guess { set, p, d: 4.0 * grid.count() as f64 };
-            let limits = Limits { tolerance: 1e-9, height: None, outer_iterations: 100, factor };
+            let limits =
+                Limits { tolerance: 1e-9, height: None, outer_iterations: 100, factor, is_guess: false };
             let solved = active_set::solve(&mut problem, Control::Force(1.0), guess, limits, &never).unwrap();
             assert_eq!((solved.status, solved.contact.len()), (Status::Converged, grid.count()));
             let k = solve(&mut problem, &solved, None, 1e-9, &never).unwrap();

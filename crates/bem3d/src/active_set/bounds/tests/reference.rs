@@ -175,6 +175,7 @@ fn random_states_are_those_of_a_dense_reference() {
             height: Some(1.0),
             outer_iterations: 200,
             factor: number % 2 == 0,
+            is_guess: false,
         };
         let guess: Guess = cold_start(&mut problem, target, limits, &never).unwrap();
         let solved = solve(&mut problem, target, guess, limits, &never).unwrap();
