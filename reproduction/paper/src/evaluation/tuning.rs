@@ -4,23 +4,39 @@
 use crate::evaluation::table_of::TableOf;
 use bem3d::Bem3d;
 use bem3d::benchmarks::{CONSTANTS, Constant, prepare_tuned};
-use contact_model::{Load, Scene, SelfAffine, Surface};
+use contact_model::{Hardness, Load, Scene, SelfAffine, Surface};
 use runs::{Error, Header, Progress, Result, files, on_one_thread, write_csv};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Cells a side, D_f, loads F_bar of one warm path, tolerance.
-type WarmPath = (usize, f64, &'static [f64], f64);
+/// Loads one after the other on one surface.
+struct WarmPath {
+    cells: usize,
+    fractal_dimension: f64,
+    /// Loads F_bar.
+    loads: &'static [f64],
+    tolerance: f64,
+    /// Hardness over E* times the rms height over the side.
+    hardness: Option<f64>,
+}
+
+impl WarmPath {
+    const fn new(cells: usize, fractal_dimension: f64, loads: &'static [f64], tolerance: f64) -> Self {
+        Self { cells, fractal_dimension, loads, tolerance, hardness: None }
+    }
+}
 
 /// The paths: factors, two-level sums, transforms of scattered, half and nearly full contact; from three to
-/// eight digits.
-const PATHS: [WarmPath; 5] = [
-    (257, 2.4, &[1e-6, 1e-4, 1e-2, 0.1, 1.0, 20.0], 1e-8),
-    (513, 2.0, &[1e-3, 0.03, 0.3, 3.0, 20.0], 1e-6),
-    (513, 2.8, &[1e-3, 0.1, 1.0, 10.0], 1e-3),
-    (1025, 2.4, &[0.02, 0.2], 1e-3),
-    (1025, 2.7, &[0.1, 0.3], 1e-6),
+/// eight digits; one with a hardness of a tenth of E* times the rms gradient.
+const PATHS: [WarmPath; 6] = [
+    WarmPath::new(257, 2.4, &[1e-6, 1e-4, 1e-2, 0.1, 1.0, 20.0], 1e-8),
+    WarmPath::new(513, 2.0, &[1e-3, 0.03, 0.3, 3.0, 20.0], 1e-6),
+    WarmPath::new(513, 2.8, &[1e-3, 0.1, 1.0, 10.0], 1e-3),
+    WarmPath::new(1025, 2.4, &[0.02, 0.2], 1e-3),
+    WarmPath::new(1025, 2.7, &[0.1, 0.3], 1e-6),
+    WarmPath { hardness: Some(HARDNESS), ..WarmPath::new(257, 2.4, &[1e-3, 1e-2, 0.1, 1.0], 1e-6) },
 ];
+const HARDNESS: f64 = 6.0;
 
 /// A run that takes more than this multiple of the time with the shipped value is stopped.
 const LONGEST: f64 = 4.0;
@@ -111,8 +127,10 @@ pub fn tuning(
 
 /// The paths in words.
 fn paths() -> String {
-    let one = |(cells, d, loads, tolerance): &WarmPath| {
-        format!("N = {cells}, D_f = {d:?}, F_bar = {loads:?}, tolerance {tolerance:e}")
+    let one = |path: &WarmPath| {
+        let WarmPath { cells, fractal_dimension: d, loads, tolerance, hardness } = path;
+        let hardness = hardness.map_or_else(String::new, |p| format!(", hardness {p:?} E* h/L"));
+        format!("N = {cells}, D_f = {d:?}, F_bar = {loads:?}, tolerance {tolerance:e}{hardness}")
     };
     format!("one thread; seed 1; each a warm path: {}", PATHS.iter().map(one).collect::<Vec<_>>().join("; "))
 }
@@ -138,9 +156,12 @@ fn run((name, multiply): Constant, factor: f64, longest: f64) -> Result<PathsCos
     let stop = || start.elapsed().as_secs_f64() > longest;
     let mut cost = PathsCost { seconds: 0.0, applications: 0, converged: true };
     let failed = |e| Error::model(format!("{factor} x {name}"))(e);
-    for (cells, d, loads, tolerance) in PATHS {
-        let surface = SelfAffine::new(d, 1.0, 1.0).map_err(failed)?;
-        let scene = Scene::new(Surface::SelfAffine(surface), 1.0);
+    for WarmPath { cells, fractal_dimension, loads, tolerance, hardness } in PATHS {
+        let surface = SelfAffine::new(fractal_dimension, 1.0, 1.0).map_err(failed)?;
+        let mut scene = Scene::new(Surface::SelfAffine(surface), 1.0);
+        if let Some(pressure) = hardness {
+            scene.effects.hardness = Hardness::Limit { pressure };
+        }
         let model = Bem3d { cells, tolerance, ..Bem3d::default() };
         let mut contact = prepare_tuned(&model, &scene, 1, (name, multiply), factor).map_err(failed)?;
         for &force_bar in loads {

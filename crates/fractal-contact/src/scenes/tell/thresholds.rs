@@ -88,7 +88,10 @@ pub(crate) fn lines(states: &StateTable<'_>, model: &str) -> Vec<String> {
             let [least, most] = [*values.first()?, *values.last()?];
             Some(if falls { [most, least] } else { [least, most] })
         };
-        let kind = loads.kind.key().replace('_', " ");
+        let kind = match loads.kind {
+            PrescribedLoad::Approach => "an approach".to_owned(),
+            kind => format!("a {}", kind.key().replace('_', " ")),
+        };
         let surfaces = match brackets.len() {
             0 => return None,
             1 => String::new(),
@@ -97,10 +100,10 @@ pub(crate) fn lines(states: &StateTable<'_>, model: &str) -> Vec<String> {
         let words = of.words();
         Some(match (ends(0).map(|[least, _]| least), ends(1).map(|[_, most]| most)) {
             (Some(before), Some(after)) => {
-                format!("{words} at a {kind} between {} and {}{surfaces}", shown(before), shown(after))
+                format!("{words} at {kind} between {} and {}{surfaces}", shown(before), shown(after))
             }
-            (Some(before), None) => format!("{words} beyond a {kind} of {}{surfaces}", shown(before)),
-            (None, Some(after)) => format!("{words} below a {kind} of {}{surfaces}", shown(after)),
+            (Some(before), None) => format!("{words} beyond {kind} of {}{surfaces}", shown(before)),
+            (None, Some(after)) => format!("{words} below {kind} of {}{surfaces}", shown(after)),
             (None, None) => return None,
         })
     };
