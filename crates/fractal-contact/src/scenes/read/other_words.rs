@@ -279,6 +279,8 @@ pub(crate) fn stands_for(table: &str, key: &str, name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scenes::read::outputs::OUTPUT_KEYS;
+    use contact_model::{Effect, Output};
 
     #[test]
     fn a_word_stands_in_one_place() {
@@ -287,6 +289,17 @@ mod tests {
         words.sort_unstable();
         words.dedup();
         assert_eq!(words.len(), count);
+    }
+
+    /// A hint that outlives its limitation would deny what a key does.
+    #[test]
+    fn nothing_that_is_an_output_or_an_effect_is_denied() {
+        let outputs = OUTPUT_KEYS.keys.iter().map(|key| key.name).chain(Output::ALL.iter().map(|o| o.name()));
+        let effects = Effect::ALL.iter().map(|effect| effect.key());
+        for name in outputs.chain(effects) {
+            let denied = TABLE.iter().find(|of| of.table.is_empty() && of.words.contains(&name));
+            assert!(denied.is_none(), "{name}: {}", denied.map_or("", |of| of.scene));
+        }
     }
 
     #[test]
