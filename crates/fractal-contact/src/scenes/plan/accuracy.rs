@@ -389,7 +389,7 @@ mod tests {
         let refused = refused.unwrap_err();
         assert_eq!(tried, [128, 256, 512]);
         assert!(
-            refused.contains("1024 cells along the longer side need up to 253 MB, and the `memory` is 70 MB"),
+            refused.contains("1024 cells along the longer side need up to 236 MB, and the `memory` is 70 MB"),
             "{refused}"
         );
         assert!(asked("accuracy = 1e-3\nmemory = \"1 MB\"").1.is_empty());
