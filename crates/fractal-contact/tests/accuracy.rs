@@ -292,7 +292,7 @@ fn a_machine_with_less_memory_refuses_the_grid() {
         let refused = run(command);
         let text = said(&refused);
         assert_eq!(refused.status.code(), Some(1), "{text}");
-        for words in ["memory = 4.0 GB", "4096 x 4096 cells", "needs up to 4.0 GB", " are available"] {
+        for words in ["memory = 4.0 GB", "4096 x 4096 cells", "needs up to 3.7 GB", " are available"] {
             assert!(text.contains(words), "{words}: {text}");
         }
     }

@@ -262,7 +262,7 @@ fn an_accuracy_chooses_the_grid() {
         (asked("accuracy = 0.1\nmemory = \"4 g\"\ncontact_modulus"), "MB, GB or TB, such as \"4 GB\""),
         (
             asked("accuracy = 0.0001\nmemory = \"20 MB\"\ncontact_modulus"),
-            "512 cells along the longer side need up to 65 MB, and the `memory` is 20 MB",
+            "512 cells along the longer side need up to 61 MB, and the `memory` is 20 MB",
         ),
         (asked("accuracy = \"100 %\"\ncontact_modulus"), "expected a share above 0 and below 100 %"),
         (asked("accuracy = \"few\"\ncontact_modulus"), "expected a pure number"),
