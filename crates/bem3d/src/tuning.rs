@@ -398,7 +398,7 @@ pub const BAND: usize = 32;
 pub const STRIPE_BYTES: usize = 256;
 /// Pairs of rows that are written to a stripe, or read from it, one after the other, in spectra of at least ...
 pub const GROUP: usize = 4;
-/// ... this number of bytes: they leave the second cache, and pieces of 2 kB are moved faster than those of 512 bytes.
+/// ... this number of bytes, which the second cache does not hold: a stripe then takes 2 kB at a time instead of 512 bytes.
 pub const GROUPED_BYTES: usize = 3 << 20;
 /// Bytes of a cache line.
 pub const CACHE_LINE: usize = 64;

@@ -159,7 +159,7 @@ const PATH: &str = "[scene]\nunits = \"none\"\nmodels = [\"bem3d\"]\nPAIR\n[scen
     hurst = 0.7\nrms_height = 0.01\n[outputs]\npressure = [\"npy\"]\n[effects]\nEFFECT\n[models.bem3d]\ncells = 49\n\
     [sampling]\nseed = 3\nSTEPS";
 
-/// What is read off each state takes its time, in which a run may be stopped too.
+/// Leakage takes a part of the time of each step, so that a run may be stopped within it.
 const LEAKAGE: &str =
     "gap = [\"npy\"]\nleakage = { viscosity = 1, pressure_drop = 1, along = \"x\" }\n[effects]";
 

@@ -77,7 +77,7 @@ impl<T: Real> Room<T> {
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Room for at least so many numbers, whatever they are.
+    /// Room for at least this number of values, which are undefined.
     fn take(&self, length: usize) -> Aligned<Complex<T>> {
         let room = std::mem::take(&mut *self.place());
         if room.len() < length { Aligned::new(length) } else { room }

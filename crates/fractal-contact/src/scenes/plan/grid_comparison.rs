@@ -116,9 +116,7 @@ impl GridComparison {
         let solved = |factor: usize| {
             let mut coarse = on_grid(scene, numerics, longer.div_ceil(factor))?;
             // Numbers are compared, not fields.
-            coarse.requested.von_mises.clear();
-            coarse.requested.stress_section.clear();
-            coarse.requested.stress_volume.clear();
+            coarse.requested.drop_fields_of_stress();
             solve(&coarse, seed, loads, stop)
         };
         let both = solved(2)?.into_iter().zip(solved(4)?);

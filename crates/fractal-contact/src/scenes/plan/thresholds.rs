@@ -1,4 +1,4 @@
-//! What happens at some load of a scene: the interface closes, or a body yields first.
+//! The thresholds of a scene: the loads at which the interface closes and a body yields first.
 
 use crate::scenes::read::{LoadRequest, SceneFile};
 use contact_model::ContactState;

@@ -223,6 +223,13 @@ impl RequestedOutputs {
         }
     }
 
+    /// Drops the fields of the stress below the surface, where its largest value is all that counts.
+    pub(crate) fn drop_fields_of_stress(&mut self) {
+        for formats in [&mut self.von_mises, &mut self.stress_section, &mut self.stress_volume] {
+            formats.clear();
+        }
+    }
+
     /// Every output, with whether it is requested.
     pub fn lines(&self) -> Vec<(&'static str, bool)> {
         let of_models = Output::ALL.iter().map(|&output| (output.name(), self.outputs.asks(output)));

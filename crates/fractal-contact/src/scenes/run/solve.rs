@@ -331,12 +331,16 @@ impl ContactInHand<'_, '_> {
             if let Ok(step) = &step {
                 self.check_memory(&[step.load])?;
             }
-            // Where what is read off the state is stopped, the step has not been made.
+            // Where a stop ends the leakage or the stress of a state, the contact goes back to before the step. Where
+            // there is no room for what it remembers, they are computed to their end.
             let reads_off = !self.scene.requested.interface.outputs().is_empty();
-            let before = if reads_off { self.contact.memory().ok().flatten() } else { None };
+            let (before, stop): (_, Stop<'_>) = match reads_off.then(|| self.contact.memory()) {
+                Some(Ok(before)) => (before, self.stop),
+                _ => (None, &never),
+            };
             let advanced = step.and_then(|step| match self.contact.advance_until(step, self.stop) {
                 Err(contact_model::Error::Stopped { .. }) => Ok(None),
-                Ok(state) => match with_interface(self.scene, numerics, step.load.normal, state, self.stop) {
+                Ok(state) => match with_interface(self.scene, numerics, step.load.normal, state, stop) {
                     Err(contact_model::Error::Stopped { .. }) => {
                         if let Some(before) = before {
                             self.contact.recall(&before)?;

@@ -61,6 +61,7 @@ impl Refinement<'_> {
             let state = contact.solve_until(load, stop)?;
             let state = with_interface(&scene, self.numerics, load.normal, state, stop)?;
             solved.push((value, state.force));
+            // A body without stress has not yielded.
             Ok(of.is_reached(&state).unwrap_or(false))
         })?;
         let force_at = |value: f64| solved.iter().find(|known| known.0.to_bits() == value.to_bits());
@@ -80,9 +81,7 @@ impl Refinement<'_> {
                 RequestedInterface { stress_below: asked.stress_below, ..RequestedInterface::default() }
             }
         };
-        scene.requested.von_mises.clear();
-        scene.requested.stress_section.clear();
-        scene.requested.stress_volume.clear();
+        scene.requested.drop_fields_of_stress();
         scene
     }
 }
